@@ -8,8 +8,8 @@
 #include "base/errors.h"
 #include "cell/model/cell_parameters.h"
 #include "cell/model/placed_cell.h"
-#include "nodes/cell/cell_state_reader.h"
 #include "nodes/cell/estimate_messages.h"
+#include "nodes/display/cell_state_reader.h"
 #include "nodes/runtime/conversions.h"
 
 namespace microinjection {

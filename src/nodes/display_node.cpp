@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "nodes/cell/cell_state_reader.h"
+#include "nodes/display/cell_state_reader.h"
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/node_parameters.h"

@@ -15,7 +15,7 @@
 
 #include "nodes/bus/diagnostics.h"
 #include "nodes/display/display_frames.h"
-#include "nodes/display/display_scene.h"
+#include "nodes/scene/display_scene.h"
 #include "operation/display/tip_trail.h"
 
 namespace microinjection {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <opencv2/core/utility.hpp>
 
-#include "nodes/cell/cell_state_reader.h"
+#include "nodes/display/cell_state_reader.h"
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/node_parameters.h"

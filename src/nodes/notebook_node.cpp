@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "base/atomic_file.h"
-#include "nodes/cell/cell_state_reader.h"
+#include "nodes/display/cell_state_reader.h"
 #include "nodes/recording/local_time.h"
 #include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/node_parameters.h"

@@ -33,6 +33,11 @@ AxesBox::AxesBox(QWidget* parent) : QWidget(parent), report_(new LampRow("", 2, 
 
 AxesBox::~AxesBox() = default;
 
+void AxesBox::start(const std::shared_ptr<Bus>& bus) {
+  bus_ = bus;
+  diagnostics_.start(*bus);
+}
+
 AxesView AxesBox::view() const {
   AxesView view = axes_;
   view.there = diagnostics_.isFresh();
@@ -41,12 +46,12 @@ AxesView AxesBox::view() const {
 }
 
 void AxesBox::press(AxesTask task) {
-  if (!diagnostics_.started() || !offer(task, view()).refusal.empty()) return;
+  if (!bus_ || !offer(task, view()).refusal.empty()) return;
   axes_.refusal.clear();
-  call_.start([action = actionOf(task, !axes_.next.empty())] {
+  call_.start(bus_, [action = actionOf(task, !axes_.next.empty())](Bus& bus) {
     CalibrateAxes step;
     step.request.action = action;
-    const bool came = ros::service::call("/haptic_bridge/calibrate_axes", step);
+    const bool came = bus.call("/haptic_bridge/calibrate_axes", step);
     return Answer{came, step.response};
   });
 }
@@ -65,8 +70,7 @@ void AxesBox::take(const Answer& answer) {
 }
 
 void AxesBox::refresh() {
-  if (!diagnostics_.started()) return;
-  diagnostics_.poll();
+  if (!bus_) return;
   if (const auto answer = call_.take()) take(*answer);
   const AxesView shown = view();
   for (const AxesTask task : kAxesTasks) {

@@ -3,6 +3,7 @@
 #include <cell_microinjection/CalibrateAxes.h>
 
 #include <QWidget>
+#include <memory>
 #include <vector>
 
 #include "operation/console/axes_tasks.h"
@@ -22,8 +23,8 @@ class AxesBox : public QWidget {
   explicit AxesBox(QWidget* parent = nullptr);
   ~AxesBox() override;
   /// Subscribes: other consoles have no use for the messages.
-  void start() { diagnostics_.start(); }
-  /// Reads the messages that came, and shows the newest.
+  void start(const std::shared_ptr<Bus>& bus);
+  /// Shows the newest of the messages that were handled.
   void refresh();
 
  private:
@@ -35,6 +36,7 @@ class AxesBox : public QWidget {
   void take(const Answer& answer);
   AxesView view() const;
 
+  std::shared_ptr<Bus> bus_;  ///< null: not started
   NodeDiagnostics diagnostics_{"haptic_bridge: loop"};
   AxesView axes_;
   BackgroundCall<Answer> call_;

@@ -7,20 +7,24 @@
 #include <thread>
 #include <utility>
 
+#include "nodes/bus/bus.h"
+
 namespace microinjection {
 
 /// A call of a service that may wait, in a thread of its own: the stop button lives in the caller's. The thread may
-/// outlive this object.
+/// outlive this object, and has its share of the bus. On virtual time nothing waits, and there is no thread.
 template <typename Answer>
 class BackgroundCall {
  public:
   bool running() const { return state_ != nullptr; }
-  void start(std::function<Answer()> call) {
+  void start(const std::shared_ptr<Bus>& bus, std::function<Answer(Bus&)> call) {
     state_ = std::make_shared<State>();
-    std::thread([state = state_, call = std::move(call)] {
-      state->answer = call();
+    auto task = [state = state_, bus, call = std::move(call)] {
+      state->answer = call(*bus);
       state->done = true;
-    }).detach();
+    };
+    if (bus->isVirtual()) return task();
+    std::thread(std::move(task)).detach();
   }
   /// The answer, once.
   std::optional<Answer> take() {

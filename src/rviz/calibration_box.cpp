@@ -31,8 +31,8 @@ CalibrationBox::CalibrationBox(std::function<SessionView()> newest, QWidget* par
 
 CalibrationBox::~CalibrationBox() = default;
 
-void CalibrationBox::start() {
-  if (!runners_) runners_ = std::make_unique<CameraTaskRunners>();
+void CalibrationBox::start(const std::shared_ptr<Bus>& bus) {
+  if (!runners_) runners_ = std::make_unique<CameraTaskRunners>(bus);
 }
 
 void CalibrationBox::press(CameraTask task) {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "nodes/bus/bus.h"
 #include "operation/console/camera_tasks.h"
 #include "rviz/lamp_row.h"
 #include "rviz/offer_row.h"
@@ -21,8 +22,8 @@ class CalibrationBox : public QWidget {
   explicit CalibrationBox(std::function<SessionView()> newest, QWidget* parent = nullptr);
   ~CalibrationBox() override;
   /// Connects to the actions: other consoles have no use for their messages.
-  void start();
-  /// Reads the messages that came, and shows the newest.
+  void start(const std::shared_ptr<Bus>& bus);
+  /// Shows the newest of the messages that were handled.
   void refresh(const SessionView& session);
 
  private:

@@ -7,73 +7,55 @@
 #include <cell_microinjection/VisionState.h>
 #include <std_srvs/Trigger.h>
 
-#include <thread>
-
 #include "operation/console/figures.h"
+#include "rviz/session_clock.h"
 
 namespace microinjection {
 namespace {
 
 using cell_microinjection::CalibrateAction;
 using cell_microinjection::CalibrateFeedback;
-using cell_microinjection::CalibrateGoal;
-using cell_microinjection::CalibrateResult;
 using cell_microinjection::FindFocusAction;
 using cell_microinjection::FindFocusFeedback;
-using cell_microinjection::FindFocusGoal;
-using cell_microinjection::FindFocusResult;
 using cell_microinjection::FindTouchAction;
 using cell_microinjection::FindTouchFeedback;
-using cell_microinjection::FindTouchGoal;
-using cell_microinjection::FindTouchResult;
 
 std::string of(int number, int all) { return std::to_string(number) + " of " + std::to_string(all); }
+
+template <typename Service>
+std::pair<bool, std::string> outcomeOfCall(Bus& bus, const std::string& name, Service service = {}) {
+  if (!bus.call(name, service)) return {false, name + " does not answer"};
+  return {service.response.success, service.response.message};
+}
 
 std::size_t indexOf(CameraTask task) { return static_cast<std::size_t>(task); }
 
 }  // namespace
 
-/// Filled by the thread that calls the service. It is shared with that thread: a call to a node that
-/// hangs may outlive the panel.
-struct CameraTaskRunners::ServiceAnswer {
-  std::atomic<bool> done{false};
-  bool success = false;
-  std::string message;
-};
-
-template <typename Service>
-void CameraTaskRunners::call(const std::string& name, Service& service, ServiceAnswer& answer) {
-  const bool answered = ros::service::call(name, service);
-  answer.success = answered && service.response.success;
-  answer.message = answered ? service.response.message : name + " does not answer";
-}
-
-CameraTaskRunners::CameraTaskRunners() {
-  node_.setCallbackQueue(&queue_);
+CameraTaskRunners::CameraTaskRunners(const std::shared_ptr<Bus>& bus) : bus_(bus) {
   // Nobody reads it here: its publisher is the node that measures.
-  vision_ = node_.subscribe<cell_microinjection::VisionState>(
-      "vision/state", 1, boost::function<void(const cell_microinjection::VisionState::ConstPtr&)>([](const auto&) {}));
+  vision_ = bus->subscribe<cell_microinjection::VisionState>("vision/state", 1, [](const auto&) {});
   const auto add = [this](CameraTask task, const auto& make) {
     runners_[indexOf(task)] =
         make([this, task](const std::string& text) { progress(task, text); },
              [this, task](bool success, const std::string& message) { end(task, success, message); });
   };
   add(CameraTask::kFocus, [this](auto progress, auto end) {
-    return std::make_unique<ActionRunner<FindFocusAction, FindFocusGoal, FindFocusFeedback, FindFocusResult>>(
-        node_, "focus/find", [](const FindFocusFeedback& at) { return "plane " + of(at.plane, at.planes); }, progress,
+    return std::make_unique<ActionRunner<FindFocusAction>>(
+        *bus_, "focus/find", [](const FindFocusFeedback& at) { return "plane " + of(at.plane, at.planes); }, progress,
         end);
   });
   add(CameraTask::kCalibrate, [this](auto progress, auto end) {
-    return std::make_unique<ActionRunner<CalibrateAction, CalibrateGoal, CalibrateFeedback, CalibrateResult>>(
-        node_, "calibration/calibrate",
+    return std::make_unique<ActionRunner<CalibrateAction>>(
+        *bus_, "calibration/calibrate",
         [](const CalibrateFeedback& at) {
           return "point " + of(at.waypoint, at.waypoints) + ", tip seen at " + std::to_string(at.seen);
         },
         progress, end);
   });
   add(CameraTask::kTouch, [this](auto progress, auto end) {
-    return std::make_unique<ActionRunner<FindTouchAction, FindTouchGoal, FindTouchFeedback, FindTouchResult>>(
-        node_, "touch/find",
+    return std::make_unique<ActionRunner<FindTouchAction>>(
+        *bus_, "touch/find",
         [](const FindTouchFeedback& at) {
           return micro(at.travel, 1) + " um down, outline displaced by " + figure(at.displacement, 1, 1) + " px";
         },
@@ -84,14 +66,12 @@ CameraTaskRunners::CameraTaskRunners() {
 CameraTaskRunners::~CameraTaskRunners() = default;
 
 void CameraTaskRunners::poll() {
-  queue_.callAvailable(ros::WallDuration(0));
-  if (!answer_ || !answer_->done) return;
-  const auto answer = std::move(answer_);
-  end(report_.task, answer->success, answer->message);
+  serveArrived(*bus_);
+  if (const auto answer = call_.take()) end(report_.task, answer->first, answer->second);
 }
 
 bool CameraTaskRunners::there(CameraTask task) const {
-  if (task == CameraTask::kMeasure) return vision_.getNumPublishers() > 0;
+  if (task == CameraTask::kMeasure) return vision_.publishers() > 0;
   // The other services are of the node that calibrates.
   return runners_[indexOf(isService(task) ? CameraTask::kCalibrate : task)]->there();
 }
@@ -110,18 +90,15 @@ void CameraTaskRunners::start(CameraTask task) {
 }
 
 void CameraTaskRunners::call(CameraTask task) {
-  answer_ = std::make_shared<ServiceAnswer>();
-  std::thread([answer = answer_, task] {
-    if (task == CameraTask::kMeasure) {
-      cell_microinjection::MeasureCell measurement;
-      measurement.request.serve = true;
-      call("/vision/measure_cell", measurement, *answer);
-    } else {
-      std_srvs::Trigger trigger;
-      call(task == CameraTask::kRezero ? "/calibration/rezero" : "/calibration/undo", trigger, *answer);
+  call_.start(bus_, [task](Bus& bus) {
+    if (task != CameraTask::kMeasure) {
+      const bool again = task == CameraTask::kRezero;
+      return outcomeOfCall<std_srvs::Trigger>(bus, again ? "/calibration/rezero" : "/calibration/undo");
     }
-    answer->done = true;
-  }).detach();
+    cell_microinjection::MeasureCell measurement;
+    measurement.request.serve = true;
+    return outcomeOfCall(bus, "/vision/measure_cell", measurement);
+  });
 }
 
 void CameraTaskRunners::cancel() {

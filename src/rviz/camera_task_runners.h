@@ -1,14 +1,13 @@
 #pragma once
 
-#include <ros/callback_queue.h>
-#include <ros/ros.h>
-
 #include <array>
-#include <atomic>
 #include <memory>
 #include <optional>
+#include <string>
+#include <utility>
 
 #include "operation/console/camera_tasks.h"
+#include "rviz/background_call.h"
 #include "rviz/task_runner.h"
 
 namespace microinjection {
@@ -21,10 +20,10 @@ namespace microinjection {
 /// Nothing here waits: the panel with the stop button lives in the same thread.
 class CameraTaskRunners {
  public:
-  CameraTaskRunners();
+  explicit CameraTaskRunners(const std::shared_ptr<Bus>& bus);
   ~CameraTaskRunners();
 
-  /// Runs the callbacks of the messages that came.
+  /// Handles the messages that came.
   void poll();
   bool there(CameraTask task) const;
   /// The task under way, started here.
@@ -34,18 +33,14 @@ class CameraTaskRunners {
   void cancel();
 
  private:
-  struct ServiceAnswer;
   void end(CameraTask task, bool success, const std::string& message);
   void progress(CameraTask task, const std::string& text);
   void call(CameraTask task);
-  template <typename Service>
-  static void call(const std::string& name, Service& service, ServiceAnswer& answer);
 
-  ros::CallbackQueue queue_;
-  ros::NodeHandle node_;
-  ros::Subscriber vision_;
+  std::shared_ptr<Bus> bus_;
+  Subscription vision_;
   std::array<std::unique_ptr<TaskRunner>, kCameraTasks.size()> runners_;  ///< null: of a service
-  std::shared_ptr<ServiceAnswer> answer_;                                 ///< of a call under way
+  BackgroundCall<std::pair<bool, std::string>> call_;                     ///< success and message
   CameraTaskReport report_;
 };
 

@@ -28,58 +28,54 @@ FocusBar::FocusBar(QWidget* parent)
 
 FocusBar::~FocusBar() = default;
 
-void FocusBar::start() {
-  if (node_) return;
-  node_.emplace();
-  node_->setCallbackQueue(&queue_);
-  commands_ = node_->advertise<sensor_msgs::JointState>("focus/move_jp", 1);
-  search_ = std::make_unique<ActionWatch>(*node_, "focus/find");
-  positions_ =
-      node_->subscribe<sensor_msgs::JointState>("focus/measured_js", 1,
-                                                boost::function<void(const sensor_msgs::JointState::ConstPtr&)>(
-                                                    [this](const auto& message) { onPosition(*message); }));
+void FocusBar::start(Bus& bus) {
+  if (bus_) return;
+  bus_ = &bus;
+  commands_ = bus.advertise<sensor_msgs::JointState>("focus/move_jp", 1);
+  search_ = std::make_unique<ActionWatch>(bus, "focus/find");
+  positions_ = bus.subscribe<sensor_msgs::JointState>("focus/measured_js", 1,
+                                                      [this](const auto& delivery) { onPosition(*delivery.message); });
 }
 
 void FocusBar::onPosition(const sensor_msgs::JointState& message) {
   if (message.position.empty() || !std::isfinite(message.position[0])) return;
   // The range is set before the virtual microscope starts; other motors have none that is known here.
-  if (!focus_.position || sessionNow() - heard_at_ > kMotorSilence) {
-    const std::vector<double> range = SessionParameters("/microscope").numbers("focus/range");
+  if (!focus_.position || sessionNow(*bus_) - heard_at_ > kMotorSilence) {
+    const std::vector<double> range = SessionParameters(*bus_, "/microscope").numbers("focus/range");
     const FocusView unlimited;
     focus_.lowest = range.size() == 2 ? range[0] : unlimited.lowest;
     focus_.highest = range.size() == 2 ? range[1] : unlimited.highest;
   }
   focus_.position = message.position[0];
-  heard_at_ = sessionNow();
+  heard_at_ = sessionNow(*bus_);
   setVisible(true);
 }
 
 FocusView FocusBar::view() const {
   FocusView view = focus_;
-  if (sessionNow() - heard_at_ > kMotorSilence) view.position.reset();
-  if (sessionNow() - sent_at_ > kOnItsWay) view.goal.reset();
+  if (sessionNow(*bus_) - heard_at_ > kMotorSilence) view.position.reset();
+  if (sessionNow(*bus_) - sent_at_ > kOnItsWay) view.goal.reset();
   view.searched = search_ && search_->active();
   return view;
 }
 
 void FocusBar::move(int steps) {
-  if (!node_) return;
-  queue_.callAvailable(ros::WallDuration(0));
+  if (!bus_) return;
+  serveArrived(*bus_);
   const FocusView focus = view();
   const double step = steps * row_->step();
   if (!offerFocusStep(focus, step).refusal.empty()) return;
   focus_.goal = focusGoal(focus, step);
-  sent_at_ = sessionNow();
+  sent_at_ = sessionNow(*bus_);
   sensor_msgs::JointState message;
-  message.header.stamp = ros::Time::now();
+  message.header.stamp = bus_->now();
   message.name = {"focus"};
   message.position = {*focus_.goal};
   commands_.publish(message);
 }
 
 void FocusBar::refresh() {
-  if (!node_) return;
-  queue_.callAvailable(ros::WallDuration(0));
+  if (!bus_) return;
   const FocusView focus = view();
   const CommandOffer down = offerFocusStep(focus, -row_->step()), up = offerFocusStep(focus, row_->step());
   row_->offer(0, down.refusal.empty());

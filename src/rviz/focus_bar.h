@@ -1,12 +1,9 @@
 #pragma once
 
-#include <ros/callback_queue.h>
-#include <ros/ros.h>
 #include <sensor_msgs/JointState.h>
 
 #include <QWidget>
 #include <memory>
-#include <optional>
 
 #include "operation/console/focus_steps.h"
 #include "rviz/action_watch.h"
@@ -23,8 +20,8 @@ class FocusBar : public QWidget {
   explicit FocusBar(QWidget* parent = nullptr);
   ~FocusBar() override;
   /// Connects to the session.
-  void start();
-  /// Reads the messages that came, and shows the newest.
+  void start(Bus& bus);
+  /// Shows the newest of the messages that were handled.
   void refresh();
   /// That many of the chosen steps, down where it is negative, if it is offered.
   void move(int steps);
@@ -36,11 +33,10 @@ class FocusBar : public QWidget {
   JogRow* row_;
   FocusView focus_;
   double heard_at_ = -1e9, sent_at_ = -1e9;  ///< s, sessionNow()
-  ros::CallbackQueue queue_;
-  std::optional<ros::NodeHandle> node_;
-  ros::Subscriber positions_;
-  ros::Publisher commands_;
+  Bus* bus_ = nullptr;                       ///< null: not started
+  Publisher<sensor_msgs::JointState> commands_;
   std::unique_ptr<ActionWatch> search_;
+  Subscription positions_;
 };
 
 }  // namespace microinjection

@@ -35,28 +35,21 @@ HandBox::HandBox(QWidget* parent)
   }
 }
 
-void HandBox::start() {
-  if (node_) return;
-  node_.emplace();
-  node_->setCallbackQueue(&queue_);
-  link_->start();
-  loop_ = node_->subscribe<cell_microinjection::LoopState>(
-      "haptic/loop_state", 1,
-      boost::function<void(const cell_microinjection::LoopState::ConstPtr&)>([this](const auto& message) {
-        const double now = ros::SteadyTime::now().toSec();
-        if (!heard_at_ || now - *heard_at_ > kBridgeSilence) readSettings();
-        heard_at_ = now;
-        hand_.has_bridge = true;
-        hand_.hold_reason = message->follows ? "" : message->hold_reason;
-      }));
-  clutches_ = node_->subscribe<sensor_msgs::Joy>(
-      "haptic/clutch", 1, boost::function<void(const sensor_msgs::Joy::ConstPtr&)>([this](const auto& message) {
-        hand_.clutch = firstButton(*message);
-      }));
-  presences_ =
-      node_->subscribe<sensor_msgs::Joy>("haptic/operator_present", 1,
-                                         boost::function<void(const sensor_msgs::Joy::ConstPtr&)>(
-                                             [this](const auto& message) { hand_.present = firstButton(*message); }));
+void HandBox::start(Bus& bus) {
+  if (bus_) return;
+  bus_ = &bus;
+  link_->start(bus);
+  loop_ = bus.subscribe<cell_microinjection::LoopState>("haptic/loop_state", 1, [this](const auto& delivery) {
+    const double now = bus_->steady().toSec();
+    if (!heard_at_ || now - *heard_at_ > kBridgeSilence) readSettings();
+    heard_at_ = now;
+    hand_.has_bridge = true;
+    hand_.hold_reason = delivery.message->follows ? "" : delivery.message->hold_reason;
+  });
+  clutches_ = bus.subscribe<sensor_msgs::Joy>(
+      "haptic/clutch", 1, [this](const auto& delivery) { hand_.clutch = firstButton(*delivery.message); });
+  presences_ = bus.subscribe<sensor_msgs::Joy>(
+      "haptic/operator_present", 1, [this](const auto& delivery) { hand_.present = firstButton(*delivery.message); });
 }
 
 /// The parameters are set before the bridge starts. To read them waits for the master, which is why
@@ -64,7 +57,7 @@ void HandBox::start() {
 void HandBox::readSettings() {
   HandSettings& settings = hand_.settings;
   settings = {};
-  SessionParameters parameters("/haptic_bridge");
+  SessionParameters parameters(*bus_, "/haptic_bridge");
   settings.mode = parameters.text("mode");
   settings.force_source = parameters.text("force_source");
   settings.position_scale = parameters.number("position_scale");
@@ -74,10 +67,9 @@ void HandBox::readSettings() {
 }
 
 void HandBox::refresh() {
-  if (!node_) return;
-  queue_.callAvailable(ros::WallDuration(0));
+  if (!bus_) return;
   HandView shown = hand_;
-  if (!heard_at_ || ros::SteadyTime::now().toSec() - *heard_at_ > kBridgeSilence) shown.hold_reason.reset();
+  if (!heard_at_ || bus_->steady().toSec() - *heard_at_ > kBridgeSilence) shown.hold_reason.reset();
   follows_->display(followsLamp(shown));
   clutch_->display(clutchLamp(shown));
   present_->display(presentLamp(shown));

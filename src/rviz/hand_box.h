@@ -1,13 +1,12 @@
 #pragma once
 
 #include <cell_microinjection/LoopState.h>
-#include <ros/callback_queue.h>
-#include <ros/ros.h>
 #include <sensor_msgs/Joy.h>
 
 #include <QWidget>
 #include <optional>
 
+#include "nodes/bus/bus.h"
 #include "operation/console/hand_lines.h"
 
 namespace microinjection {
@@ -23,8 +22,8 @@ class HandBox : public QWidget {
  public:
   explicit HandBox(QWidget* parent = nullptr);
   /// Subscribes: a console without a hand has no use for the messages.
-  void start();
-  /// Reads the messages that came, and shows the newest.
+  void start(Bus& bus);
+  /// Shows the newest of the messages that were handled.
   void refresh();
 
  private:
@@ -35,9 +34,8 @@ class HandBox : public QWidget {
   LinkBox* link_;
   HandView hand_;
   std::optional<double> heard_at_;  ///< s, of haptic_bridge
-  ros::CallbackQueue queue_;
-  std::optional<ros::NodeHandle> node_;
-  ros::Subscriber loop_, clutches_, presences_;
+  Bus* bus_ = nullptr;              ///< null: not started
+  Subscription loop_, clutches_, presences_;
 };
 
 }  // namespace microinjection

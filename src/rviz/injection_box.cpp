@@ -4,6 +4,8 @@
 #include <QLabel>
 #include <utility>
 
+#include "rviz/session_clock.h"
+
 namespace microinjection {
 
 using cell_microinjection::InjectFeedback;
@@ -35,15 +37,14 @@ InjectionBox::InjectionBox(std::function<SessionView()> newest, QWidget* parent)
 
 InjectionBox::~InjectionBox() = default;
 
-void InjectionBox::start() {
-  if (node_) return;
-  node_.emplace();
-  node_->setCallbackQueue(&queue_);
+void InjectionBox::start(Bus& bus) {
+  if (bus_) return;
+  bus_ = &bus;
   const auto describe = [](const InjectFeedback& at) {
     return progressText({at.state, at.layer, at.layers, at.depth, at.force, at.elapsed});
   };
   runner_ = std::make_unique<Runner>(
-      *node_, "controller/inject", describe,
+      bus, "controller/inject", describe,
       [this](const std::string& text) {
         if (running_) shown_ = {Light::kYellow, text};
       },
@@ -55,16 +56,16 @@ void InjectionBox::end(bool success, const std::string& message) {
   shown_ = {success ? Light::kGreen : Light::kRed, message};
 }
 
-void InjectionBox::poll() {
-  queue_.callAvailable(ros::WallDuration(0));
+void InjectionBox::checkServer() {
   if (!running_ || runner_->there()) return;
   runner_->forget();
   end(false, "injection_controller has ended");
 }
 
 void InjectionBox::press() {
-  if (!node_) return;
-  poll();
+  if (!bus_) return;
+  serveArrived(*bus_);
+  checkServer();
   if (!offerInjection(newest_(), runner_->there(), running_).refusal.empty()) return;
   running_ = true;
   shown_ = {Light::kYellow, "begins"};
@@ -74,9 +75,9 @@ void InjectionBox::press() {
 }
 
 void InjectionBox::refresh(const SessionView& session) {
-  if (!node_) return;
+  if (!bus_) return;
   setVisible(session.settings.mode == "automatic");
-  poll();
+  checkServer();
   start_->display(offerInjection(session, runner_->there(), running_));
   cancel_->offer(running_);
   report_->display(shown_);

@@ -1,13 +1,10 @@
 #pragma once
 
 #include <cell_microinjection/InjectAction.h>
-#include <ros/callback_queue.h>
-#include <ros/ros.h>
 
 #include <QWidget>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 
@@ -30,14 +27,13 @@ class InjectionBox : public QWidget {
   explicit InjectionBox(std::function<SessionView()> newest, QWidget* parent = nullptr);
   ~InjectionBox() override;
   /// Connects to the action: other consoles have no use for its messages.
-  void start();
-  /// Reads the messages that came, and shows the newest.
+  void start(Bus& bus);
+  /// Shows the newest of the messages that were handled.
   void refresh(const SessionView& session);
 
  private:
-  using Runner = ActionRunner<cell_microinjection::InjectAction, cell_microinjection::InjectGoal,
-                              cell_microinjection::InjectFeedback, cell_microinjection::InjectResult>;
-  void poll();
+  using Runner = ActionRunner<cell_microinjection::InjectAction>;
+  void checkServer();
   void press();
   void end(bool success, const std::string& message);
 
@@ -47,8 +43,7 @@ class InjectionBox : public QWidget {
   LampRow* report_;
   Lamp shown_{Light::kGrey, "nothing was started here"};
   bool running_ = false;
-  ros::CallbackQueue queue_;
-  std::optional<ros::NodeHandle> node_;
+  Bus* bus_ = nullptr;  ///< null: not started
   std::unique_ptr<Runner> runner_;
 };
 

@@ -1,6 +1,5 @@
 #include "rviz/injector_bar.h"
 
-#include <sensor_msgs/FluidPressure.h>
 #include <std_srvs/Trigger.h>
 
 #include <QGridLayout>
@@ -14,9 +13,9 @@ namespace {
 
 constexpr double kLargestPressure = 100e3;  // Pa, that can be entered; the node refuses what is beyond its range
 
-std::string callReset() {
+std::string callReset(Bus& bus) {
   std_srvs::Trigger reset;
-  if (!ros::service::call("/injector/reset", reset)) return "/injector/reset does not answer";
+  if (!bus.call("/injector/reset", reset)) return "/injector/reset does not answer";
   return reset.response.success ? "" : reset.response.message;
 }
 
@@ -46,39 +45,39 @@ InjectorBar::InjectorBar(std::function<std::optional<InjectorView>()> newest, QW
 
 InjectorBar::~InjectorBar() = default;
 
-void InjectorBar::start() {
-  if (node_) return;
-  node_.emplace();
-  commands_ = node_->advertise<sensor_msgs::FluidPressure>("injector/set_balance", 1);
+void InjectorBar::start(const std::shared_ptr<Bus>& bus) {
+  if (bus_) return;
+  bus_ = bus;
+  commands_ = bus->advertise<sensor_msgs::FluidPressure>("injector/set_balance", 1);
   setVisible(false);
 }
 
 InjectorTasksView InjectorBar::view(const std::optional<InjectorView>& injector) const {
-  return {injector, commands_.getNumSubscribers() > 0, call_.running(), refusal_};
+  return {injector, commands_.subscribers() > 0, call_.running(), refusal_};
 }
 
 /// The parameter is that of the start: a pressure that was set since is in the state only, and a pulse's, too.
 void InjectorBar::appear(const InjectorView& injector) {
-  const auto balance = SessionParameters("/injector").number("balance");
+  const auto balance = SessionParameters(*bus_, "/injector").number("balance");
   pressure_->setValue(balance.value_or(injector.busy ? 0 : injector.pressure));
   setVisible(true);
 }
 
 void InjectorBar::press(InjectorTask task) {
-  if (!node_) return;
+  if (!bus_) return;
   // The number that was typed, also without Enter.
   pressure_->clearFocus();
   if (!offer(task, view(newest_())).refusal.empty()) return;
   refusal_.clear();
-  if (task == InjectorTask::kReset) return call_.start(callReset);
+  if (task == InjectorTask::kReset) return call_.start(bus_, callReset);
   sensor_msgs::FluidPressure message;
-  message.header.stamp = ros::Time::now();
+  message.header.stamp = bus_->now();
   message.fluid_pressure = pressure_->value();
   commands_.publish(message);
 }
 
 void InjectorBar::refresh(const std::optional<InjectorView>& injector) {
-  if (!node_) return;
+  if (!bus_) return;
   if (const auto refusal = call_.take()) refusal_ = *refusal;
   if (injector && isHidden()) appear(*injector);
   const InjectorTasksView shown = view(injector);

@@ -1,10 +1,11 @@
 #pragma once
 
-#include <ros/ros.h>
+#include <sensor_msgs/FluidPressure.h>
 
 #include <QWidget>
 #include <array>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -26,7 +27,7 @@ class InjectorBar : public QWidget {
   explicit InjectorBar(std::function<std::optional<InjectorView>()> newest, QWidget* parent = nullptr);
   ~InjectorBar() override;
   /// Connects to the session: other consoles do not send the command.
-  void start();
+  void start(const std::shared_ptr<Bus>& bus);
   void refresh(const std::optional<InjectorView>& injector);
 
  private:
@@ -38,8 +39,8 @@ class InjectorBar : public QWidget {
   NumberField* pressure_;  ///< Pa
   std::array<OfferButton*, kInjectorTasks.size()> buttons_{};
   ElidedLabel* text_;
-  std::optional<ros::NodeHandle> node_;
-  ros::Publisher commands_;
+  std::shared_ptr<Bus> bus_;  ///< null: not started
+  Publisher<sensor_msgs::FluidPressure> commands_;
   std::string refusal_;
   BackgroundCall<std::string> call_;  ///< the reason for a refusal
 };

@@ -18,19 +18,11 @@ LinkBox::LinkBox(QWidget* parent) : QWidget(parent) {
 
 LinkBox::~LinkBox() = default;
 
-void LinkBox::start() {
-  if (node_) return;
-  node_.emplace();
-  node_->setCallbackQueue(&queue_);
-  const auto counts = [this](int change) {
-    return [this, change](const ros::SingleSubscriberPublisher& subscriber) {
-      if (subscriber.getSubscriberName() == "/link_emulator") emulators_ += change;
-    };
-  };
-  publisher_ = node_->advertise<std_msgs::Bool>("link/plugged", 1, counts(1), counts(-1));
-  subscriber_ = node_->subscribe<std_msgs::Bool>("link/plugged", 1,
-                                                 boost::function<void(const std_msgs::Bool::ConstPtr&)>(
-                                                     [this](const auto& message) { plugged_ = message->data; }));
+void LinkBox::start(Bus& bus) {
+  if (publisher_) return;
+  publisher_ = bus.advertise<std_msgs::Bool>("link/plugged", 1);
+  subscription_ = bus.subscribe<std_msgs::Bool>("link/plugged", 1,
+                                                [this](const auto& delivery) { plugged_ = delivery.message->data; });
 }
 
 void LinkBox::plug(bool in) {
@@ -40,10 +32,10 @@ void LinkBox::plug(bool in) {
 }
 
 void LinkBox::refresh() {
-  if (!node_) return;
-  queue_.callAvailable(ros::WallDuration(0));
-  if (emulators_ == 0) plugged_.reset();  // the next one starts plugged in
-  setVisible(emulators_ > 0);
+  if (!publisher_) return;
+  const bool emulated = publisher_.isSubscribedBy("/link_emulator");
+  if (!emulated) plugged_.reset();  // the next one starts plugged in
+  setVisible(emulated);
   const bool can_unplug = plugged_.value_or(true), can_plug_in = !plugged_.value_or(false);
   unplug_->display(can_unplug, can_unplug ? "the emulated network's cable" : "the network is unplugged");
   plug_in_->display(can_plug_in, can_plug_in ? "the emulated network's cable" : "the network is plugged in");

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <ros/callback_queue.h>
-#include <ros/ros.h>
 #include <std_msgs/Bool.h>
 
 #include <QWidget>
 #include <memory>
 #include <optional>
+
+#include "nodes/bus/bus.h"
 
 namespace microinjection {
 
@@ -20,7 +20,7 @@ class LinkBox : public QWidget {
  public:
   explicit LinkBox(QWidget* parent = nullptr);
   ~LinkBox() override;
-  void start();
+  void start(Bus& bus);
   /// Shows whether there is such a network, and whether it is plugged in.
   void refresh();
 
@@ -29,11 +29,8 @@ class LinkBox : public QWidget {
 
   std::unique_ptr<OfferRow> unplug_, plug_in_;
   std::optional<bool> plugged_;  ///< as the last message said; before the first it is not known
-  int emulators_ = 0;            ///< connections of link_emulator to publisher_
-  ros::CallbackQueue queue_;
-  std::optional<ros::NodeHandle> node_;
-  ros::Publisher publisher_;
-  ros::Subscriber subscriber_;
+  Publisher<std_msgs::Bool> publisher_;
+  Subscription subscription_;
 };
 
 }  // namespace microinjection

@@ -1,7 +1,8 @@
 #include "rviz/microscope_link.h"
 
-#include <chrono>
 #include <utility>
+
+#include "rviz/session_clock.h"
 
 namespace microinjection {
 namespace {
@@ -9,20 +10,14 @@ namespace {
 // Images that come while rviz draws a frame: what was found belongs to one of them.
 constexpr std::uint32_t kQueue = 8;
 
-/// s. The nodes of the microscope live in wall time.
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
 }  // namespace
 
-MicroscopeLink::MicroscopeLink() {
-  node_.setCallbackQueue(&queue_);
-  findings_ = node_.subscribe<cell_microinjection::VisionState>(
-      "vision/state", 1,
-      boost::function<void(const cell_microinjection::VisionState::ConstPtr&)>([this](const auto& message) {
-        specimen_ = *message;
-        pairing_.addFinding(message->header.stamp.toSec(), now());
-        grown_ = true;
-      }));
+MicroscopeLink::MicroscopeLink(Bus& bus) : bus_(bus) {
+  findings_ = bus.subscribe<cell_microinjection::VisionState>("vision/state", 1, [this](const auto& delivery) {
+    specimen_ = *delivery.message;
+    pairing_.addFinding(specimen_.header.stamp.toSec(), now());
+    grown_ = true;
+  });
   listen(true);
 }
 
@@ -32,22 +27,18 @@ void MicroscopeLink::listen(bool on) {
     images_.shutdown();
     return;
   }
-  images_ = node_.subscribe<sensor_msgs::Image>(
-      "microscope/image_raw", kQueue,
-      boost::function<void(const sensor_msgs::ImageConstPtr&)>([this](const auto& message) {
-        pairing_.addImage(message->header.stamp.toSec(), message, now());
-        grown_ = true;
-      }));
+  images_ = bus_.subscribe<sensor_msgs::Image>("microscope/image_raw", kQueue, [this](const auto& delivery) {
+    pairing_.addImage(delivery.message->header.stamp.toSec(), delivery.message, now());
+    grown_ = true;
+  });
 }
 
 bool MicroscopeLink::poll() {
-  queue_.callAvailable(ros::WallDuration(0));
+  serveArrived(bus_);
   return std::exchange(grown_, false);
 }
 
-bool MicroscopeLink::hasSource() const {
-  return findings_.getNumPublishers() > 0 || (images_ && images_.getNumPublishers() > 0);
-}
+bool MicroscopeLink::hasSource() const { return findings_.publishers() > 0 || (images_ && images_.publishers() > 0); }
 
 sensor_msgs::ImageConstPtr MicroscopeLink::image() const {
   return pairing_.age(now()) < kSilence ? pairing_.shown(now()).value_or(nullptr) : nullptr;

@@ -1,12 +1,11 @@
 #pragma once
 
 #include <cell_microinjection/VisionState.h>
-#include <ros/callback_queue.h>
-#include <ros/ros.h>
 #include <sensor_msgs/Image.h>
 
 #include <optional>
 
+#include "nodes/bus/bus.h"
 #include "operation/console/image_pairing.h"
 
 namespace microinjection {
@@ -15,13 +14,13 @@ namespace microinjection {
 ///
 /// In: microscope/image_raw, while it is asked for; vision/state
 ///
-/// The callbacks run in poll(), in the caller's thread. A reader that hangs loses images.
+/// A reader that hangs loses images.
 class MicroscopeLink {
  public:
-  MicroscopeLink();
+  explicit MicroscopeLink(Bus& bus);
   /// Reads the images, or stops to, since they are the largest messages of a session.
   void listen(bool on);
-  /// Runs the callbacks of the messages that came. Returns whether there is something new.
+  /// Handles the messages that came. Returns whether there is something new.
   bool poll();
 
   bool hasSource() const;  ///< a node publishes images, or what it finds in them
@@ -33,12 +32,13 @@ class MicroscopeLink {
  private:
   static constexpr double kSilence = 2;  ///< s
 
+  double now() const { return bus_.steady().toSec(); }  ///< s; the nodes of the microscope live in wall time
+
+  Bus& bus_;
   ImagePairing<sensor_msgs::ImageConstPtr> pairing_;
   cell_microinjection::VisionState specimen_;
   bool grown_ = false;
-  ros::CallbackQueue queue_;
-  ros::NodeHandle node_;
-  ros::Subscriber images_, findings_;
+  Subscription images_, findings_;
 };
 
 }  // namespace microinjection

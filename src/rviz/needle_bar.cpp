@@ -1,8 +1,5 @@
 #include "rviz/needle_bar.h"
 
-#include <cell_microinjection/StringStamped.h>
-#include <geometry_msgs/PoseStamped.h>
-
 #include <QHBoxLayout>
 #include <utility>
 
@@ -31,47 +28,46 @@ NeedleBar::NeedleBar(std::function<SessionView()> newest, std::function<std::opt
 
 NeedleBar::~NeedleBar() = default;
 
-void NeedleBar::start() {
-  if (node_) return;
-  node_.emplace();
-  node_->setCallbackQueue(&queue_);
-  moves_ = node_->advertise<geometry_msgs::PoseStamped>("needle/move_cp", 1);
-  stops_ = node_->advertise<cell_microinjection::StringStamped>("needle/state_command", 1);
-  calibration_ = std::make_unique<ActionWatch>(*node_, "calibration/calibrate");
-  states_ = node_->subscribe<cell_microinjection::OperatingState>(
-      "needle/operating_state", 1,
-      boost::function<void(const cell_microinjection::OperatingState::ConstPtr&)>([this](const auto& message) {
-        needle_.state = operatingStateOf(message->state);
-        const bool ended = needle_.busy && !message->is_busy && sessionNow() - sent_at_ > kBegins;
+void NeedleBar::start(Bus& bus) {
+  if (bus_) return;
+  bus_ = &bus;
+  moves_ = bus.advertise<geometry_msgs::PoseStamped>("needle/move_cp", 1);
+  stops_ = bus.advertise<cell_microinjection::StringStamped>("needle/state_command", 1);
+  calibration_ = std::make_unique<ActionWatch>(bus, "calibration/calibrate");
+  states_ =
+      bus.subscribe<cell_microinjection::OperatingState>("needle/operating_state", 1, [this](const auto& delivery) {
+        const cell_microinjection::OperatingState& message = *delivery.message;
+        needle_.state = operatingStateOf(message.state);
+        const bool ended = needle_.busy && !message.is_busy && sessionNow(*bus_) - sent_at_ > kBegins;
         if (ended) needle_.goal.reset();
-        needle_.busy = message->is_busy;
-      }));
+        needle_.busy = message.is_busy;
+      });
 }
 
 NeedleView NeedleBar::view() {
-  const double since = needle_.busy ? 0 : sessionNow() - sent_at_;
+  const double since = needle_.busy ? 0 : sessionNow(*bus_) - sent_at_;
   if (since > kMotionForgotten) needle_.goal.reset();
   NeedleView view = needle_;
   // Kept in needle_: a report of the motion that comes late makes it count again, for STOP.
   if (since > kBegins) view.goal.reset();
   // A latched state outlives its node.
-  if (states_.getNumPublishers() == 0) view.state.reset();
+  if (states_.publishers() == 0) view.state.reset();
   if (const auto pose = pose_()) view.tip = pose->translation();
   view.calibrating = calibration_ && calibration_->active();
   return view;
 }
 
 void NeedleBar::press(std::size_t button) {
-  if (!node_) return;
-  queue_.callAvailable(ros::WallDuration(0));
+  if (!bus_) return;
+  serveArrived(*bus_);
   const NeedleView needle = view();
   const auto pose = pose_();
   if (!pose || !offerNeedleStep(needle, newest_()).refusal.empty()) return;
   const double step = (button % 2 == 0 ? -1 : 1) * row_->step();
   needle_.goal = needleGoal(needle, step * Eigen::Vector3d::Unit(static_cast<Eigen::Index>(button) / 2));
-  sent_at_ = sessionNow();
+  sent_at_ = sessionNow(*bus_);
   geometry_msgs::PoseStamped message;
-  message.header.stamp = ros::Time::now();
+  message.header.stamp = bus_->now();
   message.header.frame_id = "world";
   message.pose.position.x = needle_.goal->x();
   message.pose.position.y = needle_.goal->y();
@@ -85,20 +81,19 @@ void NeedleBar::press(std::size_t button) {
 }
 
 void NeedleBar::stop() {
-  if (!node_) return;
+  if (!bus_) return;
   // Whether a step is under way is known from messages that may have waited while rviz drew.
-  queue_.callAvailable(ros::WallDuration(0));
+  serveArrived(*bus_);
   if (!view().goal) return;
   cell_microinjection::StringStamped message;
-  message.header.stamp = ros::Time::now();
+  message.header.stamp = bus_->now();
   message.string = "stop";
   stops_.publish(message);
   needle_.goal.reset();
 }
 
 void NeedleBar::refresh(const SessionView& session) {
-  if (!node_) return;
-  queue_.callAvailable(ros::WallDuration(0));
+  if (!bus_) return;
   const CommandOffer offered = offerNeedleStep(view(), session);
   const bool allowed = offered.refusal.empty();
   for (std::size_t i = 0; i < 6; ++i) row_->offer(i, allowed);

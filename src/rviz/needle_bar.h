@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cell_microinjection/OperatingState.h>
-#include <ros/callback_queue.h>
-#include <ros/ros.h>
+#include <cell_microinjection/StringStamped.h>
+#include <geometry_msgs/PoseStamped.h>
 
 #include <Eigen/Geometry>
 #include <QWidget>
@@ -28,8 +28,8 @@ class NeedleBar : public QWidget {
             QWidget* parent = nullptr);
   ~NeedleBar() override;
   /// Connects to the needle: other consoles have no use for its messages.
-  void start();
-  /// Reads the messages that came, and shows the newest.
+  void start(Bus& bus);
+  /// Shows the newest of the messages that were handled.
   void refresh(const SessionView& session);
   /// Stops the needle on its way of a step.
   void stop();
@@ -43,11 +43,11 @@ class NeedleBar : public QWidget {
   JogRow* row_;
   NeedleView needle_;
   double sent_at_ = -1e9;  ///< s, sessionNow()
-  ros::CallbackQueue queue_;
-  std::optional<ros::NodeHandle> node_;
-  ros::Subscriber states_;
-  ros::Publisher moves_, stops_;
+  Bus* bus_ = nullptr;     ///< null: not started
+  Publisher<geometry_msgs::PoseStamped> moves_;
+  Publisher<cell_microinjection::StringStamped> stops_;
   std::unique_ptr<ActionWatch> calibration_;
+  Subscription states_;
 };
 
 }  // namespace microinjection

@@ -1,16 +1,16 @@
 #pragma once
 
 #include <diagnostic_msgs/DiagnosticArray.h>
-#include <ros/callback_queue.h>
-#include <ros/ros.h>
 
 #include <functional>
 #include <optional>
 #include <string>
 
+#include "nodes/bus/bus.h"
+
 namespace microinjection {
 
-/// What one node says of itself on /diagnostics, read when the caller asks.
+/// What one node says of itself on /diagnostics.
 class NodeDiagnostics {
  public:
   using Handler = std::function<void(const diagnostic_msgs::DiagnosticStatus& status)>;
@@ -18,9 +18,7 @@ class NodeDiagnostics {
   /// @param name  of the status, as "force_sensor: sensor"
   explicit NodeDiagnostics(std::string name, Handler handler = {});
   /// Subscribes: a box that is not shown has no use for the messages.
-  void start();
-  void poll();
-  bool started() const { return node_.has_value(); }
+  void start(Bus& bus);
   bool isFresh() const;  ///< the node reports each second
 
  private:
@@ -28,10 +26,9 @@ class NodeDiagnostics {
 
   std::string name_;
   Handler handler_;
-  ros::CallbackQueue queue_;
-  std::optional<ros::NodeHandle> node_;
-  ros::Subscriber reports_;
+  Bus* bus_ = nullptr;              ///< null: not started
   std::optional<double> heard_at_;  ///< s, sessionNow()
+  Subscription reports_;
 };
 
 }  // namespace microinjection

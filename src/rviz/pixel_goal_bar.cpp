@@ -21,8 +21,8 @@ PixelGoalBar::PixelGoalBar(QWidget* parent) : QWidget(parent), report_(new LampR
   layout->setColumnStretch(2, 1);
 }
 
-void PixelGoalBar::start() {
-  if (!link_) link_ = std::make_unique<PixelGoalLink>();
+void PixelGoalBar::start(Bus& bus) {
+  if (!link_) link_ = std::make_unique<PixelGoalLink>(bus);
 }
 
 void PixelGoalBar::cancel() {

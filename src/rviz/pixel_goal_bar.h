@@ -15,7 +15,7 @@ class PixelGoalBar : public QWidget {
  public:
   explicit PixelGoalBar(QWidget* parent = nullptr);
   /// Connects to the session.
-  void start();
+  void start(Bus& bus);
   /// Reads the messages that came, and shows the newest.
   void refresh();
   void propose(const Eigen::Vector2d& pixel);

@@ -1,7 +1,6 @@
 #include "rviz/pixel_goal_link.h"
 
 #include <cell_microinjection/GoToPixelAction.h>
-#include <geometry_msgs/PointStamped.h>
 
 #include "operation/console/figures.h"
 #include "rviz/session_clock.h"
@@ -13,7 +12,6 @@ namespace {
 using cell_microinjection::GoToPixelAction;
 using cell_microinjection::GoToPixelFeedback;
 using cell_microinjection::GoToPixelGoal;
-using cell_microinjection::GoToPixelResult;
 
 constexpr double kClickForgotten = 60;  // s, after a click
 
@@ -24,25 +22,20 @@ std::string textOf(const GoToPixelFeedback& at) {
 
 }  // namespace
 
-class PixelGoalLink::Runner : public ActionRunner<GoToPixelAction, GoToPixelGoal, GoToPixelFeedback, GoToPixelResult> {
+class PixelGoalLink::Runner : public ActionRunner<GoToPixelAction> {
  public:
   using ActionRunner::ActionRunner;
 };
 
-PixelGoalLink::PixelGoalLink() {
-  node_.setCallbackQueue(&queue_);
-  operating_ = node_.subscribe<cell_microinjection::OperatingState>(
-      "controller/operating_state", 1,
-      boost::function<void(const cell_microinjection::OperatingState::ConstPtr&)>(
-          [this](const auto& message) { onOperating(*message); }));
-  injection_ = node_.subscribe<cell_microinjection::InjectionStatus>(
-      "controller/injection_state", 1,
-      boost::function<void(const cell_microinjection::InjectionStatus::ConstPtr&)>(
-          [this](const auto&) { onInjection(); }));
-  proposed_ = node_.advertise<geometry_msgs::PointStamped>("visual_servo/proposed_pixel", 1, true);
+PixelGoalLink::PixelGoalLink(Bus& bus)
+    : bus_(bus), proposed_(bus.advertise<geometry_msgs::PointStamped>("visual_servo/proposed_pixel", 1, true)) {
+  operating_ = bus.subscribe<cell_microinjection::OperatingState>(
+      "controller/operating_state", 1, [this](const auto& delivery) { onOperating(*delivery.message); });
+  injection_ = bus.subscribe<cell_microinjection::InjectionStatus>("controller/injection_state", 1,
+                                                                   [this](const auto&) { onInjection(); });
   publish();  // what a console of before has proposed is forgotten
   runner_ = std::make_unique<Runner>(
-      node_, "visual_servo/go_to_pixel", textOf,
+      bus, "visual_servo/go_to_pixel", textOf,
       [this](const std::string& text) {
         if (goal_.under_way) report_ = {Light::kYellow, text};
       },
@@ -52,16 +45,16 @@ PixelGoalLink::PixelGoalLink() {
 PixelGoalLink::~PixelGoalLink() { proposed_.publish(geometry_msgs::PointStamped()); }
 
 void PixelGoalLink::poll() {
-  queue_.callAvailable(ros::WallDuration(0));
+  serveArrived(bus_);
   if (goal_.under_way && !runner_->there()) {
     runner_->forget();
     end(false, "visual_servo has ended");
   }
-  if (sessionNow() - proposed_at_ > kClickForgotten) discard();
+  if (sessionNow(bus_) - proposed_at_ > kClickForgotten) discard();
 }
 
 SessionView PixelGoalLink::session() const {
-  return sessionNow() - heard_at_ < kControllerSilence ? session_ : SessionView();
+  return sessionNow(bus_) - heard_at_ < kControllerSilence ? session_ : SessionView();
 }
 
 CommandOffer PixelGoalLink::offered() const { return offer(goal_, session(), runner_->there()); }
@@ -69,7 +62,7 @@ CommandOffer PixelGoalLink::offered() const { return offer(goal_, session(), run
 void PixelGoalLink::propose(const Eigen::Vector2d& pixel) {
   if (goal_.under_way) return;
   goal_.pixel = pixel;
-  proposed_at_ = sessionNow();
+  proposed_at_ = sessionNow(bus_);
   report_ = {};
   publish();
 }
@@ -83,7 +76,7 @@ void PixelGoalLink::discard() {
 void PixelGoalLink::publish() {
   geometry_msgs::PointStamped message;
   if (goal_.pixel) {
-    message.header.stamp = ros::Time::now();
+    message.header.stamp = bus_.now();
     message.point.x = goal_.pixel->x();
     message.point.y = goal_.pixel->y();
   }
@@ -114,10 +107,10 @@ void PixelGoalLink::onOperating(const cell_microinjection::OperatingState& messa
 /// The mode is a parameter that is set before the controller starts. To read it waits for the master,
 /// which is why it is done only when a controller appears.
 void PixelGoalLink::onInjection() {
-  if (sessionNow() - heard_at_ > kControllerSilence) {
-    session_.settings.mode = SessionParameters("/injection_controller").text("mode");
+  if (sessionNow(bus_) - heard_at_ > kControllerSilence) {
+    session_.settings.mode = SessionParameters(bus_, "/injection_controller").text("mode");
   }
-  heard_at_ = sessionNow();
+  heard_at_ = sessionNow(bus_);
 }
 
 void PixelGoalLink::end(bool success, const std::string& message) {

@@ -2,12 +2,12 @@
 
 #include <cell_microinjection/InjectionStatus.h>
 #include <cell_microinjection/OperatingState.h>
-#include <ros/callback_queue.h>
-#include <ros/ros.h>
+#include <geometry_msgs/PointStamped.h>
 
 #include <memory>
 #include <string>
 
+#include "nodes/bus/bus.h"
 #include "operation/console/light.h"
 #include "operation/console/pixel_goal.h"
 #include "rviz/task_runner.h"
@@ -22,13 +22,11 @@ namespace microinjection {
 ///
 /// A place is forgotten when the way to it ends, however it ends, when the controller leaves ENABLED,
 /// and after a minute: nobody shall press Go for a click of long ago.
-///
-/// The callbacks run in poll(), in the caller's thread.
 class PixelGoalLink {
  public:
-  PixelGoalLink();
+  explicit PixelGoalLink(Bus& bus);
   ~PixelGoalLink();
-  void poll();
+  void poll();  ///< handles the messages that came
 
   const PixelGoal& goal() const { return goal_; }
   const Lamp& report() const { return report_; }  ///< of the last way
@@ -49,14 +47,13 @@ class PixelGoalLink {
   void onInjection();
   void end(bool success, const std::string& message);
 
+  Bus& bus_;
   PixelGoal goal_;
   Lamp report_;
   SessionView session_;
   double heard_at_ = -1e9, proposed_at_ = -1e9;  ///< s, sessionNow()
-  ros::CallbackQueue queue_;
-  ros::NodeHandle node_;
-  ros::Subscriber operating_, injection_;
-  ros::Publisher proposed_;
+  Publisher<geometry_msgs::PointStamped> proposed_;
+  Subscription operating_, injection_;
   std::unique_ptr<Runner> runner_;
 };
 

@@ -14,8 +14,8 @@ namespace microinjection {
 namespace {
 
 /// `config.operator_name` stays empty where the session is not scored. Returns the values that are no numbers.
-std::string readTraining(TrainingConfig& config) {
-  SessionParameters parameters("/session_recorder/training");
+std::string readTraining(const Bus& bus, TrainingConfig& config) {
+  SessionParameters parameters(bus, "/session_recorder/training");
   config.operator_name = parameters.text("operator");
   if (config.operator_name.empty()) return "";
   if (const std::string force = parameters.text("force"); !force.empty()) config.force = force;
@@ -51,10 +51,10 @@ ScoreBox::ScoreBox(QWidget* parent) : QWidget(parent), text_(new ElidedLabel(1, 
   text_->setText("this session is not scored: start it with record:=FOLDER set:=record.trainee=NAME");
 }
 
-void ScoreBox::start(SessionLink& link) {
+void ScoreBox::start(const Bus& bus, SessionLink& link) {
   TrainingConfig config;
   if (log_) return;
-  const std::string error = readTraining(config);
+  const std::string error = readTraining(bus, config);
   // A score against another reference than the recorder's would be a wrong one.
   if (!error.empty()) text_->setText(QString::fromStdString(error));
   if (config.operator_name.empty() || !error.empty()) return;

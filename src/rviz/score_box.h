@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "nodes/bus/bus.h"
 #include "operation/record/training_log.h"
 
 namespace microinjection {
@@ -18,7 +19,7 @@ class ScoreBox : public QWidget {
  public:
   explicit ScoreBox(QWidget* parent = nullptr);
   /// Reads the references of the session_recorder, and listens to the session.
-  void start(SessionLink& link);
+  void start(const Bus& bus, SessionLink& link);
   void refresh();
 
  private:

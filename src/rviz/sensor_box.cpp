@@ -15,10 +15,10 @@ using cell_microinjection::CalibrateForce;
 
 constexpr double kLargestForce = 1000;  // uN, that can be entered; the node refuses what is beyond its range
 
-std::string call(SensorTask task, double along, double across) {
+std::string call(Bus& bus, SensorTask task, double along, double across) {
   if (task == SensorTask::kTare) {
     std_srvs::Trigger tare;
-    if (!ros::service::call("/force_sensor/tare", tare)) return "/force_sensor/tare does not answer";
+    if (!bus.call("/force_sensor/tare", tare)) return "/force_sensor/tare does not answer";
     return tare.response.success ? "" : tare.response.message;
   }
   CalibrateForce step;
@@ -27,7 +27,7 @@ std::string call(SensorTask task, double along, double across) {
                                                     : CalibrateForce::Request::UNDO;
   step.request.force.z = 1e-6 * along;
   step.request.force.x = 1e-6 * across;
-  if (!ros::service::call("/force_sensor/calibrate", step)) return "/force_sensor/calibrate does not answer";
+  if (!bus.call("/force_sensor/calibrate", step)) return "/force_sensor/calibrate does not answer";
   return step.response.success ? "" : step.response.message;
 }
 
@@ -61,6 +61,11 @@ SensorBox::SensorBox(QWidget* parent)
 
 SensorBox::~SensorBox() = default;
 
+void SensorBox::start(const std::shared_ptr<Bus>& bus) {
+  bus_ = bus;
+  diagnostics_.start(*bus);
+}
+
 void SensorBox::read(const diagnostic_msgs::DiagnosticStatus& status) {
   for (const auto& value : status.values) {
     if (value.key == "tare and calibration") sensor_.outcome = value.value;
@@ -76,14 +81,15 @@ SensorView SensorBox::view() const {
 }
 
 void SensorBox::press(SensorTask task) {
-  if (!diagnostics_.started() || !offer(task, view()).refusal.empty()) return;
+  if (!bus_ || !offer(task, view()).refusal.empty()) return;
   sensor_.refusal.clear();
-  call_.start([task, along = along_->value(), across = across_->value()] { return call(task, along, across); });
+  call_.start(bus_, [task, along = along_->value(), across = across_->value()](Bus& bus) {
+    return call(bus, task, along, across);
+  });
 }
 
 void SensorBox::refresh() {
-  if (!diagnostics_.started()) return;
-  diagnostics_.poll();
+  if (!bus_) return;
   if (const auto refusal = call_.take()) sensor_.refusal = *refusal;
   const SensorView shown = view();
   for (const SensorTask task : kSensorTasks) {

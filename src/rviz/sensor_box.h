@@ -3,6 +3,7 @@
 #include <cell_microinjection/CalibrateForce.h>
 
 #include <QWidget>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -24,8 +25,8 @@ class SensorBox : public QWidget {
   explicit SensorBox(QWidget* parent = nullptr);
   ~SensorBox() override;
   /// Subscribes: other consoles have no use for the messages.
-  void start() { diagnostics_.start(); }
-  /// Reads the messages that came, and shows the newest.
+  void start(const std::shared_ptr<Bus>& bus);
+  /// Shows the newest of the messages that were handled.
   void refresh();
 
  private:
@@ -33,6 +34,7 @@ class SensorBox : public QWidget {
   void press(SensorTask task);
   SensorView view() const;
 
+  std::shared_ptr<Bus> bus_;  ///< null: not started
   NodeDiagnostics diagnostics_;
   SensorView sensor_;
   BackgroundCall<std::string> call_;  ///< the reason for a refusal

@@ -1,8 +1,5 @@
 #include "rviz/session_link.h"
 
-#include <actionlib_msgs/GoalID.h>
-#include <cell_microinjection/StringStamped.h>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -30,17 +27,12 @@ Eigen::Vector3d toVector(const geometry_msgs::Vector3& vector) { return {vector.
 
 }  // namespace
 
-SessionLink::SessionLink(std::function<std::optional<Pose>()> pipette) : pipette_(std::move(pipette)) {
-  node_.setCallbackQueue(&queue_);
-  const auto counts = [this](int change) {
-    return [this, change](const ros::SingleSubscriberPublisher& subscriber) {
-      if (subscriber.getSubscriberName() == kController) listening_ += change;
-    };
-  };
-  commands_ = node_.advertise<cell_microinjection::StringStamped>("controller/state_command", 1, counts(1), counts(-1));
-  for (const std::string action : kStoppedActions) {
-    cancels_.push_back(node_.advertise<actionlib_msgs::GoalID>(action + "/cancel", 1));
-  }
+SessionLink::SessionLink(Bus& bus, std::function<std::optional<Pose>()> pipette)
+    : bus_(bus),
+      pipette_(std::move(pipette)),
+      commands_(bus.advertise<cell_microinjection::StringStamped>("controller/state_command", 1)) {
+  for (const std::string action : kStoppedActions)
+    cancels_.push_back(bus.advertise<actionlib_msgs::GoalID>(action + "/cancel", 1));
   subscribe("controller/operating_state", &SessionLink::onOperating);
   subscribe("controller/injection_state", &SessionLink::onInjection);
   subscribe("controller/loop_state", &SessionLink::onLoop);
@@ -53,21 +45,20 @@ SessionLink::SessionLink(std::function<std::optional<Pose>()> pipette) : pipette
 
 template <typename Message>
 void SessionLink::subscribe(const std::string& topic, void (SessionLink::*receive)(const Message&)) {
-  const boost::function<void(const boost::shared_ptr<const Message>&)> callback =
-      [this, receive](const boost::shared_ptr<const Message>& message) { (this->*receive)(*message); };
   // Each node reports its diagnostics by itself, within the same millisecond as others.
   const std::uint32_t queue = topic == "/diagnostics" ? 50 : 1;
-  subscribers_.push_back(node_.subscribe<Message>(topic, queue, callback));
+  subscriptions_.push_back(bus_.subscribe<Message>(
+      topic, queue, [this, receive](const Delivery<Message>& delivery) { (this->*receive)(*delivery.message); }));
 }
 
 bool SessionLink::poll() {
-  queue_.callAvailable(ros::WallDuration(0));
+  serveArrived(bus_);
   return std::exchange(grown_, false);
 }
 
 void SessionLink::send(const std::string& command) {
   cell_microinjection::StringStamped message;
-  message.header.stamp = ros::Time::now();
+  message.header.stamp = bus_.now();
   message.string = command;
   commands_.publish(message);
 }
@@ -75,7 +66,7 @@ void SessionLink::send(const std::string& command) {
 void SessionLink::stop(const std::string& command) {
   send(command);
   // An empty goal is every goal.
-  for (const ros::Publisher& cancel : cancels_) cancel.publish(actionlib_msgs::GoalID());
+  for (const auto& cancel : cancels_) cancel.publish(actionlib_msgs::GoalID());
 }
 
 /// The parameters are set before the controller starts. To read them waits for the master, which is
@@ -83,7 +74,7 @@ void SessionLink::stop(const std::string& command) {
 void SessionLink::readSettings() {
   ControllerSettings& settings = session_.settings;
   settings = {};
-  SessionParameters parameters(kController);
+  SessionParameters parameters(bus_, kController);
   settings.mode = parameters.text("mode");
   settings.force_limit = parameters.number("force_limit");
   settings.depth_limit = parameters.number("depth_limit");
@@ -93,8 +84,9 @@ void SessionLink::readSettings() {
 
 SessionView SessionLink::session() const {
   SessionView view = session_;
-  view.listens = listening_ > 0;
-  if (heard_at_ && sessionNow() - *heard_at_ < kControllerSilence) return view;
+  // What is sent before is lost.
+  view.listens = commands_.isSubscribedBy(kController);
+  if (heard_at_ && sessionNow(bus_) - *heard_at_ < kControllerSilence) return view;
   view.operating.reset();
   view.injection.reset();
   return view;
@@ -105,14 +97,14 @@ std::string SessionLink::servedCell() const {
   return changed ? changed_ : served_;
 }
 
-Lamp SessionLink::lamp(Device device) const { return lamps_.lamp(device, sessionNow()); }
+Lamp SessionLink::lamp(Device device) const { return lamps_.lamp(device, sessionNow(bus_)); }
 
 std::optional<CellEstimateView> SessionLink::estimate() const {
-  return sessionNow() - estimate_.at < kOld ? estimate_.value : std::nullopt;
+  return sessionNow(bus_) - estimate_.at < kOld ? estimate_.value : std::nullopt;
 }
 
 std::optional<InjectorView> SessionLink::injector() const {
-  return sessionNow() - injector_.at < kOld ? injector_.value : std::nullopt;
+  return sessionNow(bus_) - injector_.at < kOld ? injector_.value : std::nullopt;
 }
 
 void SessionLink::onOperating(const cell_microinjection::OperatingState& message) {
@@ -122,8 +114,8 @@ void SessionLink::onOperating(const cell_microinjection::OperatingState& message
 }
 
 void SessionLink::onInjection(const cell_microinjection::InjectionStatus& message) {
-  if (!heard_at_ || sessionNow() - *heard_at_ > kControllerSilence) readSettings();
-  heard_at_ = sessionNow();
+  if (!heard_at_ || sessionNow(bus_) - *heard_at_ > kControllerSilence) readSettings();
+  heard_at_ = sessionNow(bus_);
   session_.injection = injectionStateOf(message.state);
   session_.waits = message.waits;
   session_.force = message.force;
@@ -138,7 +130,7 @@ void SessionLink::onLoop(const cell_microinjection::LoopState& message) { sessio
 
 void SessionLink::onCell(const cell_microinjection::CellState& message) {
   ForceHistory::Sample sample;
-  sample.time = sessionNow();
+  sample.time = sessionNow(bus_);
   const auto pipette = pipette_();
   if (pipette && message.converged) sample.predicted = plausible(toVector(message.force).dot(pipette->axis));
   if (measured_.value && sample.time - measured_.at < kFresh) sample.measured = measured_.value->axial;
@@ -153,7 +145,7 @@ void SessionLink::onCell(const cell_microinjection::CellState& message) {
 SessionTable::Row SessionLink::rowOf(const cell_microinjection::CellState& message,
                                      const std::optional<Pose>& pipette) const {
   SessionTable::Row row;
-  row.time = sessionNow();
+  row.time = sessionNow(bus_);
   row.needle = pipette;
   if (pipette && message.converged) row.predicted = toVector(message.force);
   if (row.time - measured_.at < kFresh) row.measured = measured_.value;
@@ -167,7 +159,7 @@ SessionTable::Row SessionLink::rowOf(const cell_microinjection::CellState& messa
 }
 
 void SessionLink::onMeasured(const geometry_msgs::WrenchStamped& message) {
-  measured_ = {std::nullopt, sessionNow()};
+  measured_ = {std::nullopt, sessionNow(bus_)};
   if (message.header.stamp.isZero()) return;
   const Eigen::Vector3d force = toVector(message.wrench.force);
   std::optional<double> axial;
@@ -197,7 +189,7 @@ void SessionLink::onEstimate(const cell_microinjection::CellEstimate& message) {
     view.puncture_high = puncture.depth_high;
     view.puncture_force = puncture.force;
   }
-  estimate_ = {view, sessionNow()};
+  estimate_ = {view, sessionNow(bus_)};
 }
 
 void SessionLink::onInjector(const cell_microinjection::InjectorState& message) {
@@ -208,12 +200,12 @@ void SessionLink::onInjector(const cell_microinjection::InjectorState& message) 
   view.pulses = message.pulses;
   view.fault = message.fault;
   view.refusal = message.refusal;
-  injector_ = {view, sessionNow()};
+  injector_ = {view, sessionNow(bus_)};
 }
 
 void SessionLink::onDiagnostics(const diagnostic_msgs::DiagnosticArray& message) {
   for (const auto& status : message.status) {
-    lamps_.receive({status.name, status.level, status.message}, sessionNow());
+    lamps_.receive({status.name, status.level, status.message}, sessionNow(bus_));
     if (status.name == "cell_simulator: cell parameters") changed_ = status.message;
     if (status.name != "cell_simulator: solver") continue;
     const auto served = std::find_if(status.values.begin(), status.values.end(),

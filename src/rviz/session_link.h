@@ -1,15 +1,15 @@
 #pragma once
 
+#include <actionlib_msgs/GoalID.h>
 #include <cell_microinjection/CellEstimate.h>
 #include <cell_microinjection/CellState.h>
 #include <cell_microinjection/InjectionStatus.h>
 #include <cell_microinjection/InjectorState.h>
 #include <cell_microinjection/LoopState.h>
 #include <cell_microinjection/OperatingState.h>
+#include <cell_microinjection/StringStamped.h>
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <geometry_msgs/WrenchStamped.h>
-#include <ros/callback_queue.h>
-#include <ros/ros.h>
 
 #include <Eigen/Core>
 #include <functional>
@@ -18,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "nodes/bus/bus.h"
 #include "operation/console/cell_lines.h"
 #include "operation/console/device_lamps.h"
 #include "operation/console/force_history.h"
@@ -34,16 +35,15 @@ namespace microinjection {
 ///      the needle through vision (kStoppedActions)
 ///
 /// All queues have length 1 and nothing latches: a console that hangs neither fills a queue of the
-/// loop nor leaves a command behind. The callbacks run in poll(), in the caller's thread.
+/// loop nor leaves a command behind.
 class SessionLink {
  public:
   using Pose = SessionTable::Pose;
 
   /// `pipette`: gives tip and axis in `world`, or nothing where tf does not have them.
-  explicit SessionLink(std::function<std::optional<Pose>()> pipette);
+  SessionLink(Bus& bus, std::function<std::optional<Pose>()> pipette);
 
-  /// Runs the callbacks of the messages that came. Never waits for one. Returns whether the history
-  /// has grown.
+  /// Handles the messages that came. Never waits for one. Returns whether the history has grown.
   bool poll();
   /// Sends a command of the operator with the present stamp.
   void send(const std::string& command);
@@ -85,14 +85,11 @@ class SessionLink {
 
   SessionTable::Row rowOf(const cell_microinjection::CellState& message, const std::optional<Pose>& pipette) const;
 
+  Bus& bus_;
   std::function<std::optional<Pose>()> pipette_;
   std::function<void(const SessionTable::Row&)> row_handler_;
-  ros::CallbackQueue queue_;
-  ros::NodeHandle node_;
-  std::vector<ros::Subscriber> subscribers_;
-  ros::Publisher commands_;
-  std::vector<ros::Publisher> cancels_;
-  int listening_ = 0;  ///< connections of the controller to commands_: what is sent before the first is lost
+  Publisher<cell_microinjection::StringStamped> commands_;
+  std::vector<Publisher<actionlib_msgs::GoalID>> cancels_;
   SessionView session_;
   std::optional<double> heard_at_;  ///< s, of the controller's last message
   Received<std::optional<SessionTable::Measured>> measured_;
@@ -103,6 +100,7 @@ class SessionLink {
   ForceHistory history_;
   bool grown_ = false;
   std::string served_, changed_;  ///< of the cell simulator's reports
+  std::vector<Subscription> subscriptions_;
 };
 
 }  // namespace microinjection

@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "nodes/bus/bus.h"
+
 namespace microinjection {
 
 /// The parameters of one node of the session, which are set before it starts. Each call waits for the master: read them
@@ -12,7 +14,7 @@ namespace microinjection {
 class SessionParameters {
  public:
   /// @param node  as "/injection_controller"
-  explicit SessionParameters(std::string node) : node_(std::move(node)) {}
+  SessionParameters(const Bus& bus, std::string node) : bus_(bus), node_(std::move(node)) {}
 
   /// Empty: it is not set, or no number. The second is an error().
   std::optional<double> number(const std::string& key);
@@ -24,6 +26,9 @@ class SessionParameters {
   const std::string& error() const { return error_; }
 
  private:
+  std::optional<double> numberOf(const std::string& key, const YAML::Node& value);
+
+  const Bus& bus_;
   std::string node_;
   std::string error_;
 };

@@ -1,15 +1,20 @@
 #pragma once
 
-#include <actionlib/client/simple_action_client.h>
+#include <actionlib/action_definition.h>
+#include <actionlib_msgs/GoalID.h>
+#include <actionlib_msgs/GoalStatusArray.h>
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <string>
 #include <utility>
 
+#include "nodes/bus/bus.h"
+
 namespace microinjection {
 
-/// A client of one action that lives in the caller's callback queue and never waits.
+/// A client of one action that never waits. Its callbacks run as those of the bus.
 class TaskRunner {
  public:
   using Progress = std::function<void(const std::string& text)>;
@@ -27,39 +32,101 @@ std::pair<bool, std::string> outcomeOf(const Result& result) {
   return {result.success, result.message};
 }
 
-/// `describe`: the text of a feedback.
-template <typename Action, typename Goal, typename Feedback, typename Result>
+/// The end of a goal whose result says nothing, in actionlib's words.
+std::string endText(const actionlib_msgs::GoalStatus& status);
+/// Whether a goal with this status is over.
+bool isOver(const actionlib_msgs::GoalStatus& status);
+
+/// actionlib's SimpleActionClient on a bus. `describe`: the text of a feedback.
+template <typename Action>
 class ActionRunner : public TaskRunner {
  public:
-  ActionRunner(ros::NodeHandle& node, const std::string& name, std::function<std::string(const Feedback&)> describe,
+  ACTION_DEFINITION(Action)
+
+  ActionRunner(Bus& bus, const std::string& action, std::function<std::string(const Feedback&)> describe,
                Progress progress, End end)
-      : client_(node, name, false),
+      : bus_(bus),
+        action_(action),
         describe_(std::move(describe)),
         progress_(std::move(progress)),
-        end_(std::move(end)) {}
+        end_(std::move(end)),
+        goals_(bus.advertise<ActionGoal>(action + "/goal", kQueue)),
+        cancels_(bus.advertise<actionlib_msgs::GoalID>(action + "/cancel", kQueue)) {
+    status_ = bus.subscribe<actionlib_msgs::GoalStatusArray>(action + "/status", 1, [this](const auto& delivery) {
+      server_ = delivery.raw.sender;
+      onStatus(*delivery.message);
+    });
+    feedback_ = bus.subscribe<ActionFeedback>(action + "/feedback", kQueue, [this](const auto& delivery) {
+      if (isMine(delivery.message->status)) progress_(describe_(delivery.message->feedback));
+    });
+    results_ = bus.subscribe<ActionResult>(action + "/result", kQueue, [this](const auto& delivery) {
+      if (isMine(delivery.message->status)) onResult(*delivery.message);
+    });
+  }
 
-  bool there() const override { return client_.isServerConnected(); }
+  /// As actionlib has it: the node that publishes the status has connected all five topics.
+  bool there() const override {
+    return !server_.empty() && goals_.isSubscribedBy(server_) && cancels_.isSubscribedBy(server_) &&
+           feedback_.publishers() > 0 && results_.publishers() > 0;
+  }
   void start() override { start(Goal()); }
   void start(const Goal& goal) {
-    client_.sendGoal(
-        goal,
-        [this](const actionlib::SimpleClientGoalState& state, const boost::shared_ptr<const Result>& result) {
-          const auto [success, text] = result ? outcomeOf(*result) : std::pair(false, std::string());
-          end_(success, text.empty() ? state.toString() + " " + state.getText() : text);
-        },
-        {}, [this](const boost::shared_ptr<const Feedback>& feedback) { progress_(describe_(*feedback)); });
+    const ros::Time now = bus_.now();
+    ActionGoal message;
+    message.header.stamp = message.goal_id.stamp = now;
+    message.goal_id.id =
+        bus_.name() + "-" + action_ + "-" + std::to_string(++sent_) + "-" + std::to_string(now.toNSec());
+    message.goal = goal;
+    id_ = message.goal_id.id;
+    seen_ = Seen::kNot;
+    goals_.publish(message);
   }
   /// Of a node that is gone nothing comes anymore.
-  void forget() { client_.stopTrackingGoal(); }
+  void forget() { id_.clear(); }
+  /// An empty id is that of every goal.
   void cancel() override {
-    if (client_.isServerConnected()) client_.cancelAllGoals();
+    if (there()) cancels_.publish(actionlib_msgs::GoalID());
   }
 
  private:
-  actionlib::SimpleActionClient<Action> client_;
+  static constexpr std::uint32_t kQueue = 10;
+  enum class Seen { kNot, kUnderWay, kOver };  ///< the goal, in the server's status
+
+  bool isMine(const actionlib_msgs::GoalStatus& status) const { return !id_.empty() && status.goal_id.id == id_; }
+
+  void onResult(const ActionResult& message) {
+    const auto [success, text] = outcomeOf(message.result);
+    finish(success, text.empty() ? endText(message.status) : text);
+  }
+  /// A server that knows nothing of a goal that it had is another one.
+  void onStatus(const actionlib_msgs::GoalStatusArray& message) {
+    const auto& goals = message.status_list;
+    const auto mine = std::find_if(goals.begin(), goals.end(), [this](const auto& goal) { return isMine(goal); });
+    if (mine != goals.end()) {
+      seen_ = isOver(*mine) ? Seen::kOver : Seen::kUnderWay;
+    } else if (!id_.empty() && seen_ == Seen::kUnderWay) {
+      actionlib_msgs::GoalStatus lost;
+      lost.status = actionlib_msgs::GoalStatus::LOST;
+      finish(false, endText(lost));
+    }
+  }
+  void finish(bool success, const std::string& text) {
+    id_.clear();
+    end_(success, text);
+  }
+
+  Bus& bus_;
+  std::string action_;
   std::function<std::string(const Feedback&)> describe_;
   Progress progress_;
   End end_;
+  std::string server_;  ///< the node that publishes the status
+  std::string id_;      ///< of the goal that is followed; empty: none
+  unsigned sent_ = 0;
+  Seen seen_ = Seen::kNot;
+  Publisher<ActionGoal> goals_;
+  Publisher<actionlib_msgs::GoalID> cancels_;
+  Subscription status_, feedback_, results_;
 };
 
 }  // namespace microinjection

@@ -36,22 +36,14 @@ ViewRow::ViewRow(QWidget* parent)
   QObject::connect(section_, &QCheckBox::clicked, this, [this] { send(); });
 }
 
-void ViewRow::start() {
-  if (node_) return;
-  node_.emplace();
-  node_->setCallbackQueue(&queue_);
-  commands_ = node_->advertise<cell_microinjection::DisplayView>("viz/set_view", 1);
-  views_ = node_->subscribe<cell_microinjection::DisplayView>(
-      "viz/view", 1,
-      boost::function<void(const cell_microinjection::DisplayView::ConstPtr&)>([this](const auto& message) {
-        colours_->setCurrentIndex(colours_->findData(QString::fromStdString(message->colour)));
-        section_->setChecked(message->section);
-        setEnabled(true);
-      }));
-}
-
-void ViewRow::refresh() {
-  if (node_) queue_.callAvailable(ros::WallDuration(0));
+void ViewRow::start(Bus& bus) {
+  if (commands_) return;
+  commands_ = bus.advertise<cell_microinjection::DisplayView>("viz/set_view", 1);
+  views_ = bus.subscribe<cell_microinjection::DisplayView>("viz/view", 1, [this](const auto& delivery) {
+    colours_->setCurrentIndex(colours_->findData(QString::fromStdString(delivery.message->colour)));
+    section_->setChecked(delivery.message->section);
+    setEnabled(true);
+  });
 }
 
 void ViewRow::send() {

@@ -1,13 +1,12 @@
 #pragma once
 
 #include <cell_microinjection/DisplayView.h>
-#include <ros/callback_queue.h>
-#include <ros/ros.h>
 
 #include <QCheckBox>
 #include <QComboBox>
 #include <QWidget>
-#include <optional>
+
+#include "nodes/bus/bus.h"
 
 namespace microinjection {
 
@@ -17,19 +16,16 @@ namespace microinjection {
 class ViewRow : public QWidget {
  public:
   explicit ViewRow(QWidget* parent = nullptr);
-  void start();
-  /// Reads the messages that came, and shows the newest; grey until there is one.
-  void refresh();
+  /// Shows each message; grey until there is one.
+  void start(Bus& bus);
 
  private:
   void send();
 
   QComboBox* colours_;
   QCheckBox* section_;
-  ros::CallbackQueue queue_;
-  std::optional<ros::NodeHandle> node_;
-  ros::Subscriber views_;
-  ros::Publisher commands_;
+  Publisher<cell_microinjection::DisplayView> commands_;
+  Subscription views_;
 };
 
 }  // namespace microinjection

@@ -12,7 +12,7 @@ import numpy
 BUTTONS = ("Enable", "Home", "Approach", "Indent", "Inject", "Withdraw", "Disable")
 DEVICES = ("Rig", "Camera", "Sensor", "Hand", "Cell", "Injector")
 HAND = ("Needle", "Clutch", "Switch")
-ROWS = {"inject": (*DEVICES, "Estimate"), "teleoperate": (*HAND, *DEVICES), "axes": HAND, "calibrate": DEVICES}  # of lamps
+ROWS = {"inject": (*DEVICES, "Estimate"), "teleoperate": (*HAND, *DEVICES)}  # of lamps
 GUARDS = ("Force", "Depth")
 STOP, OFFERED, REFUSED = (0xC6, 0x28, 0x28), (0x2B, 0x6C, 0xB0), (0xD5, 0xD8, 0xDC)
 LAMPS = {"green": (0x2E, 0x9E, 0x4F), "yellow": (0xF2, 0xB1, 0x0E), "red": (0xD0, 0x2C, 0x2C),
@@ -106,13 +106,6 @@ def offered_below(row, path):
     return [(column, row + (a + b) // 2) for a, b in runs(pixels[:, column], OFFERED) if b - a > LEAST_BUTTON]
 
 
-def offered_right_of(column, path):
-    """Places of the offered buttons right of a column, from top to bottom."""
-    pixels = pixels_of(path)[:, column + 1:]
-    at = int(numpy.argmax(has(pixels, OFFERED).sum(axis=0)))
-    return [(column + 1 + at, (a + b) // 2) for a, b in runs(pixels[:, at], OFFERED) if b - a > LEAST_BUTTON]
-
-
 def rows_of_offered(path, least):
     """[[place, ...], ...] of the offered buttons from top to bottom and from left to right, rows of at least that many."""
     pixels = pixels_of(path)
@@ -123,17 +116,6 @@ def rows_of_offered(path, least):
             if b - a > LEAST_BUTTON and not blue[row - 1, a:b + 1].any():  # its upper edge
                 rows.setdefault(row, []).append(((a + b) // 2, row + LEAST_BUTTON // 2))
     return [buttons for _, buttons in sorted(rows.items()) if len(buttons) >= least]
-
-
-def beside(place, path):
-    """What is drawn right of a button at this place."""
-    x, y = place
-    return pixels_of(path)[y - 10:y + 10, x + 90:x + 330].tobytes()
-
-
-def has_lamp(colour, column, path):
-    """A lamp right of a column has this colour."""
-    return int(has(pixels_of(path)[:, column:column + 200], LAMPS[colour]).sum()) > LEAST_LAMP**2
 
 
 def look(path, environment, name="inject"):

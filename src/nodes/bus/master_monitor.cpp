@@ -5,6 +5,7 @@
 #include <ros/param.h>
 #include <ros/this_node.h>
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
@@ -18,13 +19,12 @@
 namespace microinjection {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
 constexpr Seconds kQuestionPeriod(0.5);  ///< from a reply to the next request
-/// Since the last request that was answered. Long, since real-time nodes that need all of the processor delay this
-/// thread and the master; a dead master refuses at once.
-constexpr Seconds kReplyTimeout(5);
+/// Of this process's running time since the last request that was answered. Long, since real-time nodes that need all
+/// of the processor delay this thread and the master; a dead master refuses at once.
+constexpr double kReplyTimeout = 5;           // s
 constexpr unsigned kRepliesPerLinkCheck = 2;  ///< 1 s between checks for lost publishers
 
 bool isRegistered() {
@@ -38,11 +38,12 @@ bool isRegistered() {
 
 struct MasterMonitor::Shared {
   std::atomic<bool> refused{false};
-  std::atomic<Clock::time_point> last_reply{Clock::now()};
-  std::atomic<double> away{0};      // s, counted by refused requests: not while this process is frozen
-  std::atomic<bool> polled{false};  // masterLostForLong() was called
-  double orphan_timeout = 60;       // s
-  std::mutex mutex;                 // of the following members, which a step does not use
+  std::atomic<double> awake{0};       // s that this process has been running
+  std::atomic<double> last_reply{0};  // s of it, of the last request that was answered
+  std::atomic<double> away{0};        // s, counted by refused requests: not while this process is frozen
+  std::atomic<bool> polled{false};    // masterLostForLong() was called
+  double orphan_timeout = 60;         // s
+  std::mutex mutex;                   // of the following members, which a step does not use
   std::condition_variable changed;
   unsigned replies = 0;            // the thread's
   LostPublishers lost_publishers;  // the thread's
@@ -54,13 +55,13 @@ struct MasterMonitor::Shared {
     while (!changed.wait_for(lock, kQuestionPeriod, [this] { return ending; })) {
       lock.unlock();
       // The time of the question: a thread that stands still behind the answer must not make it fresh.
-      const Clock::time_point asked = Clock::now();
+      const double asked = awake;
       const bool registered = isRegistered();
       refused = !registered;
       if (registered) last_reply = asked;
       away = registered ? 0 : away + kQuestionPeriod.count();
       if (registered && ++replies % kRepliesPerLinkCheck == 0) {
-        const Clock::time_point checked = Clock::now();
+        const double checked = awake;
         lost_publishers.check();
         last_reply = checked;  // the check waited for replies, too
       }
@@ -72,7 +73,7 @@ struct MasterMonitor::Shared {
   }
 };
 
-MasterMonitor::MasterMonitor(bool timed) : timed_(timed), shared_(std::make_shared<Shared>()) {
+MasterMonitor::MasterMonitor() : shared_(std::make_shared<Shared>()) {
   double& timeout = shared_->orphan_timeout;
   ros::param::get("/orphan_timeout", timeout);
   if (!(timeout > 0)) {
@@ -93,9 +94,14 @@ MasterMonitor::~MasterMonitor() {
   shared_->changed.wait_for(lock, Seconds(1), [this] { return shared_->ended; });
 }
 
+void MasterMonitor::step(const ros::SteadyTime& now) {
+  awake_.step(now);
+  shared_->awake.store(awake_.seconds(), std::memory_order_relaxed);
+}
+
 bool MasterMonitor::lost() const {
-  if (shared_->refused.load(std::memory_order_relaxed)) return true;
-  return timed_ && Clock::now() - shared_->last_reply.load(std::memory_order_relaxed) > kReplyTimeout;
+  return shared_->refused.load(std::memory_order_relaxed) ||
+         awake_.seconds() - shared_->last_reply.load(std::memory_order_relaxed) > kReplyTimeout;
 }
 
 bool MasterMonitor::masterLostForLong() const {

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <atomic>
-#include <cstdint>
 #include <memory>
+
+#include "nodes/runtime/awake_time.h"
 
 namespace microinjection {
 
@@ -12,15 +12,16 @@ namespace microinjection {
 /// until they restart.
 class MasterMonitor {
  public:
-  /// Use between ros::init and the end of ROS. A master that is absent or refuses is lost. With
-  /// `timed`, a master without a reply for 5 s is lost, too; without it, nothing depends on the
-  /// machine's speed.
-  explicit MasterMonitor(bool timed);
+  /// Use between ros::init and the end of ROS.
+  MasterMonitor();
   ~MasterMonitor();
   MasterMonitor(const MasterMonitor&) = delete;
   MasterMonitor& operator=(const MasterMonitor&) = delete;
 
-  /// Does not block.
+  /// Must be called at least every AwakeTime::kLongestStep. Does not block.
+  void step(const ros::SteadyTime& now);
+  /// A master that is absent or refuses is lost, and one that has not replied for 5 s in which this process ran: one
+  /// that was frozen meanwhile knows nothing of its master. Does not block.
   bool lost() const;
   /// Whether the master is lost for longer than the parameter /orphan_timeout (s of wall time;
   /// default 60, in (0, inf)). The node must then end by itself. Does not block. A node that never
@@ -30,7 +31,7 @@ class MasterMonitor {
 
  private:
   struct Shared;
-  bool timed_;
+  AwakeTime awake_;
   std::shared_ptr<Shared> shared_;  // shared with the thread, which cannot be stopped while the master blocks it
 };
 

@@ -97,7 +97,7 @@ class RosImageSubscription : public RawSubscription {
 
 }  // namespace
 
-RosBus::RosBus(bool timed) : master_(timed) {}
+RosBus::RosBus(Master master) : master_(master == Master::kWatched ? std::make_unique<MasterMonitor>() : nullptr) {}
 RosBus::~RosBus() = default;
 
 const std::string& RosBus::name() const { return ros::this_node::getName(); }
@@ -171,8 +171,9 @@ void RosBus::setStep(double period, std::function<void(const ros::Time&)> step) 
 
 bool RosBus::waitUntil(const std::function<bool()>& done, double timeout) {
   const ros::SteadyTime begin = steady();
-  while (isRunning() && !done() && secondsBetween(begin, steady()) <= timeout)
-    sampled_.queue.callAvailable(ros::WallDuration(0.01));
+  const ros::WallDuration wait(std::min(0.01, timeout));
+  for (bool in_time = true; in_time && isRunning() && !done(); in_time = secondsBetween(begin, steady()) <= timeout)
+    sampled_.queue.callAvailable(wait);
   return done();
 }
 
@@ -189,7 +190,8 @@ RosBus::Lane& RosBus::ownThread() {
 }
 
 bool RosBus::shouldContinue() {
-  if (master_.masterLostForLong() && !busy_) {
+  if (master_) master_->step(steady());
+  if (master_ && master_->masterLostForLong() && !busy_) {
     ROS_ERROR("the ROS master has been away for too long, and nothing moves: this node ends");
     stopped_ = true;
   }

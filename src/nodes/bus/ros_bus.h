@@ -22,8 +22,12 @@ namespace microinjection {
 /// is lost (MasterMonitor) isLost() holds; when it is lost for long and the node is not busy, run() ends.
 class RosBus : public Bus {
  public:
-  /// Use after ros::init; one for each process. `timed`: see MasterMonitor.
-  explicit RosBus(bool timed = true);
+  /// Who watches the master. A program with a life of its own, such as rviz, does not end with its master.
+  enum class Master { kWatched, kIgnored };
+
+  /// Use after ros::init; one for each process that is a node. With Master::kIgnored nothing is ever lost; instead of
+  /// run(), which is for nodes, such a program calls waitUntil() with time-out 0 in its own loop.
+  explicit RosBus(Master master = Master::kWatched);
   ~RosBus() override;
 
   const std::string& name() const override;
@@ -36,7 +40,7 @@ class RosBus : public Bus {
   Subscription subscribeImages(const std::string& topic, std::uint32_t queue, RawHandler handler) override;
   BusHandle timer(double period, std::function<void()> task) override;
   std::vector<std::string> publishersOf(const std::string& topic) const override;
-  bool isLost() const override { return master_.lost(); }
+  bool isLost() const override { return master_ && master_->lost(); }
   void setStep(double period, std::function<void(const ros::Time&)> step) override;
   void onEnd(std::function<void()> task) override { end_ = std::move(task); }
   void stop() override { stopped_ = true; }
@@ -73,10 +77,10 @@ class RosBus : public Bus {
   /// The lane of a node's own thread, which starts with its first use.
   Lane& ownThread();
 
-  MasterMonitor master_;
-  Lane waking_;        ///< wakes the node's loop up
-  Lane sampled_;       ///< read before a step: to wake up for it would cost more than the step
-  double period_ = 0;  ///< s; 0: the node has no steps
+  std::unique_ptr<MasterMonitor> master_;  ///< null: ignored
+  Lane waking_;                            ///< wakes the node's loop up
+  Lane sampled_;                           ///< read before a step: to wake up for it would cost more than the step
+  double period_ = 0;                      ///< s; 0: the node has no steps
   std::function<void(const ros::Time&)> step_;
   std::function<void()> end_;
   bool driven_ = false;     ///< a subscription starts steps

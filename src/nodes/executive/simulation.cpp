@@ -72,7 +72,9 @@ SimulationResult simulate(const Session& session, const SimulationConfig& config
   Executive executive;
   std::shared_ptr<SessionWatch> watch;
   executive.add("simulation", [&](Bus& bus) { return watch = std::make_shared<SessionWatch>(bus); });
-  addNodes(executive, planOf(session, SessionClock::kVirtual));
+  Session simulated = session;
+  simulated.display.markers = false;  // nobody looks, and no record has them
+  addNodes(executive, planOf(simulated, SessionClock::kVirtual));
 
   SimulationResult result;
   const Clock::time_point begin = Clock::now();

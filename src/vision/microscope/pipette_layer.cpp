@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace microinjection {
 namespace {
@@ -14,7 +15,8 @@ constexpr float kMiddle = 0.45F;           // darkness of the wall's middle over
 constexpr double kCoreWidth = 0.5;         // rms half width over the half width of the core
 constexpr double kHoldingRim = 1.5e-6;     // m
 constexpr double kLeastGrowth = 1e-3;      // px
-constexpr float kSteepest = 0.97F;         // sine of the largest angle of a round lip
+constexpr float kSteepest = 0.97F;         // sine of the largest angle of a round lip,
+constexpr float kSteepestCosine = 0.24F;   // and at most its cosine
 constexpr float kRim = 0.5F;               // darkness of the end face's rim over that of the wall
 
 using Value = EdgeResponse::Value;
@@ -97,18 +99,19 @@ struct End {
 };
 
 /// The kernel of the edge response is a product of one along and one across the axis, so that the
-/// response of a band with an end is the product of theirs.
-Change changeAt(const Station& station, Optics::Look look, float r, const End& end) {
+/// response of a band with an end is the product of theirs. Without `end`: far behind it, where that is 1.
+Change changeAt(const Station& station, Optics::Look look, float r, const std::optional<End>& end) {
   const Value across = bandOf(station.depth, r, station.outer, station.slant);
-  const Value outer = end.value * across;
-  const Value inner = end.value * bandOf(station.depth, r, station.inner, station.slant);
-  const float core = end.value.real() * std::exp(-station.narrowness * r * r);
+  const Value lumen = bandOf(station.depth, r, station.inner, station.slant);
+  const Value outer = end ? end->value * across : across;
+  const Value inner = end ? end->value * lumen : lumen;
+  const float core = (end ? end->value.real() : 1) * std::exp(-station.narrowness * r * r);
   Change change{0, 0};
   change.transmission = -station.wall * darknessOf(station, std::min(r, station.outer)) * (outer - inner).real() -
-                        station.lumen * inner.real() + station.gain * core -
-                        kRim * station.wall * ((end.value - end.rim) * across).real();
+                        station.lumen * inner.real() + station.gain * core;
+  if (end) change.transmission -= kRim * station.wall * ((end->value - end->rim) * across).real();
   if (look == Optics::Look::kPhase) {
-    const float halo = end.halo * bandOf(station.halo, r, station.outer, station.slant).real();
+    const float halo = (end ? end->halo : 1) * bandOf(station.halo, r, station.outer, station.slant).real();
     change.transmission -= 0.5F * station.phase * (outer.real() - halo);
   } else {
     change.transmission -= station.phase * (2.0F * outer - inner).imag();
@@ -172,6 +175,7 @@ class TubePicture {
     rim_ = static_cast<float>(tube.rim);
     back_ = static_cast<float>(end_.depth.reach());
     if (optics.look() == Optics::Look::kPhase) back_ = std::max(back_, static_cast<float>(end_.halo.reach()));
+    far_ = lip_ + (back_ + rim_) / (lip_ > 0 ? kSteepestCosine : 1);
     placeStations();
   }
 
@@ -223,7 +227,8 @@ class TubePicture {
       const auto place = std::min(static_cast<std::size_t>(std::max(0.0F, (s - begin_) * kStationsPerPixel + 0.5F)),
                                   stations_.size() - 1);
       if (s < -back_ || r > widths_[place]) continue;
-      const Change change = changeAt(stations_[place], optics_.look(), r, endAt(s, r));
+      const std::optional<End> end = s < far_ ? std::optional<End>(endAt(s, r)) : std::nullopt;
+      const Change change = changeAt(stations_[place], optics_.look(), r, end);
       transmission[x] *= std::max(0.0F, 1 + contrast * change.transmission);
       if (path) path[x] += contrast * change.path;
     }
@@ -247,6 +252,7 @@ class TubePicture {
   Station end_;
   float lip_, rim_;  ///< px
   float back_;       ///< px before the end face that see it
+  float far_;        ///< px along the axis from which on the end is not seen
   float begin_ = 0;  ///< px along the axis, of the first station
   std::vector<Station> stations_;
   std::vector<float> widths_;  ///< px from the axis that see the station

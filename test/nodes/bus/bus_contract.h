@@ -215,6 +215,16 @@ TYPED_TEST_P(BusContract, TimerCallsUntilItEnds) {
   EXPECT_EQ(calls, before);
 }
 
+TYPED_TEST_P(BusContract, WaitingForNoTimeHandlesWhatHasArrived) {
+  const auto latched = this->pair_.first().template advertise<geometry_msgs::WrenchStamped>("at_once", 10, true);
+  latched.publish(this->wrench(1));
+  const auto received = this->record(this->pair_.second(), "at_once");
+  EXPECT_TRUE(this->pair_.serve([&] {
+    EXPECT_FALSE(this->pair_.second().waitUntil([] { return false; }, 0));
+    return !received->forces.empty();
+  }));
+}
+
 TYPED_TEST_P(BusContract, NodeStepsAtItsRateAndServesSampledMessagesBeforeAStep) {
   const auto publisher = this->pair_.first().template advertise<geometry_msgs::WrenchStamped>("force", 10);
   const auto received = this->record(this->pair_.second(), "force");
@@ -264,7 +274,8 @@ REGISTER_TYPED_TEST_SUITE_P(BusContract, MessageArrivesWithSenderTimeAndNumber, 
                             LateSubscriberReceivesTheLastMessageOfALatchingPublisherOnly,
                             FullQueueDropsItsOldestMessages, SeveralPublishersAndTheirEnds,
                             EndedSubscriptionReceivesNothing, ServiceAnswersUntilItEnds, ParametersAreYaml,
-                            NamesResolve, TimerCallsUntilItEnds, NodeStepsAtItsRateAndServesSampledMessagesBeforeAStep,
-                            DrivingMessageStartsAStep, NodeThatStopsEndsInGoodOrder);
+                            NamesResolve, TimerCallsUntilItEnds, WaitingForNoTimeHandlesWhatHasArrived,
+                            NodeStepsAtItsRateAndServesSampledMessagesBeforeAStep, DrivingMessageStartsAStep,
+                            NodeThatStopsEndsInGoodOrder);
 
 }  // namespace microinjection

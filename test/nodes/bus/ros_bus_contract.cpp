@@ -1,5 +1,7 @@
 // The contract of a bus, on a RosBus: a program for a rostest, since it needs a master.
 #include <ros/ros.h>
+#include <signal.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <future>
@@ -59,6 +61,30 @@ class RosPair : public BusPair {
 
   std::unique_ptr<RosBus> first_, second_;
 };
+
+/// Freezes this process for that many s, as SIGSTOP or a host that stands still does.
+void freeze(unsigned seconds) {
+  const pid_t child = fork();
+  if (child == 0) {
+    sleep(seconds);
+    kill(getppid(), SIGCONT);
+    _exit(0);
+  }
+  raise(SIGSTOP);
+}
+
+TEST(RosBus, WhoWasFrozenHasNotLostTheMasterMeanwhile) {
+  RosBus bus;
+  int steps = 0, lost = 0;
+  bus.setStep(0.01, [&](const ros::Time&) {
+    if (++steps == 1) freeze(7);  // longer than a master may be silent
+    lost += bus.isLost();
+    if (steps == 100) bus.stop();
+  });
+  bus.run();
+  EXPECT_EQ(steps, 100);
+  EXPECT_EQ(lost, 0);
+}
 
 }  // namespace
 

@@ -6,7 +6,7 @@
 
 #include "cell_microinjection/InjectionStatus.h"
 #include "cell_microinjection/MeasureCell.h"
-#include "nodes/cell/cell_state_reader.h"
+#include "nodes/display/cell_state_reader.h"
 #include "placed_specimen.h"
 #include "scripted_needle.h"
 

@@ -1,4 +1,4 @@
-#include "nodes/cell/cell_state_reader.h"
+#include "nodes/display/cell_state_reader.h"
 
 #include <algorithm>
 #include <cmath>

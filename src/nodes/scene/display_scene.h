@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "nodes/display/cell_section.h"
-#include "nodes/display/cell_stress.h"
+#include "nodes/scene/cell_section.h"
+#include "nodes/scene/cell_stress.h"
 #include "operation/display/cell_members.h"
 #include "operation/display/cell_surface.h"
 #include "operation/display/colour_ranges.h"

@@ -1,11 +1,11 @@
-#include "nodes/display/cell_stress.h"
+#include "nodes/scene/cell_stress.h"
 
 #include <limits>
 #include <memory>
 
 #include "base/errors.h"
 #include "cell/model/placed_cell.h"
-#include "nodes/cell/cell_state_reader.h"
+#include "nodes/display/cell_state_reader.h"
 
 namespace microinjection {
 namespace {

@@ -1,4 +1,4 @@
-#include "nodes/display/cell_section.h"
+#include "nodes/scene/cell_section.h"
 
 #include <algorithm>
 #include <array>

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "nodes/display/cell_stress.h"
+#include "nodes/scene/cell_stress.h"
 #include "operation/display/layer_border.h"
 #include "operation/display/section_cut.h"
 

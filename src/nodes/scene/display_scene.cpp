@@ -1,4 +1,4 @@
-#include "nodes/display/display_scene.h"
+#include "nodes/scene/display_scene.h"
 
 #include <algorithm>
 #include <vector>
