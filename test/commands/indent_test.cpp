@@ -118,9 +118,9 @@ TEST_F(IndentCommand, OutputThatCannotBeWrittenIsAnError) {
 }
 
 TEST_F(IndentCommand, MovesSidewaysBothWays) {
-  const Outcome there = run("--scene scene.yaml --depths 1e-6 --tolerance 0.05 --lateral 1e-6,-2e-6");
-  const Outcome back = run("--scene scene.yaml --depths 1e-6 --tolerance 0.05 --lateral -1e-6,2e-6");
-  const Outcome down = run("--scene scene.yaml --depths 1e-6 --tolerance 0.05 --model spatial");
+  const Outcome there = run("--scene scene.yaml --depths 1e-6 --lateral 1e-6,-2e-6");
+  const Outcome back = run("--scene scene.yaml --depths 1e-6 --lateral -1e-6,2e-6");
+  const Outcome down = run("--scene scene.yaml --depths 1e-6 --model spatial");
   ASSERT_EQ(there.status, 0) << there.err;
   ASSERT_EQ(back.status, 0) << back.err;
   const auto a = table(there.out).at(0), b = table(back.out).at(0), c = table(down.out).at(0);
