@@ -46,12 +46,15 @@ test_core() {
   run_core core "$(core_folder)" "$@"
 }
 
-# The gtest programs of the named folders of test/, one for each room.
+# The gtest programs of the named folders of test/, one for each room; with ROS also one for each folder of nodes.
 test_targets() {
   local rooms room folder
   rooms=$(sed -n -e 's/^microinjection_room(\([a-z/]*\).*/\1/p' "$ROOT/src/CMakeLists.txt")
+  if [[ $kind == ros ]]; then
+    rooms+=" rviz $(cd "$ROOT/test" && find nodes -name '*_test.cpp' -printf '%h\n' | sort -u | xargs)"
+  fi
   for folder in "$@"; do
-    for room in $rooms benchmark commands nodes; do
+    for room in $rooms benchmark commands; do
       [[ $room != "$folder" && $room != "$folder"/* ]] || echo "${room//\//_}_test"
     done
   done
