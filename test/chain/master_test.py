@@ -131,17 +131,17 @@ class MasterTest(unittest.TestCase):
         until(busy, "a pulse")
         until(lambda: np.ptp(self.needle.newest(RATE, position)[:, 2]) > 50e-9, "a needle that moves")
 
-    def all_lost(self):
-        """Whether each node that has told of its inputs says by now that the master is lost."""
+    def lost(self):
+        """Of each node that has told of its inputs whether it says by now that the master is lost."""
         newest = {}
         for said in self.said(0, (": inputs",)):
             node, _, text = said.partition(": ")
-            newest[node] = text
-        return newest and all(LOST in text for text in newest.values())
+            newest[node] = LOST in text
+        return newest.values()
 
     def check_all_rests(self):
         # Each finds out by itself, and one that stood still meanwhile later than others.
-        until(self.all_lost, "that the master is lost")
+        until(lambda: self.lost() and all(self.lost()), "that the master is lost")
         until(lambda: not self.felt.newest(20, force).any(), "zero force")
         until(lambda: np.ptp(self.needle.newest(RATE, position)[:, 2]) < STILL, "a needle that rests")
         until(lambda: not self.injector.messages[-1].busy, "the end of the pulse")
@@ -158,6 +158,8 @@ class MasterTest(unittest.TestCase):
         self.check_all_rests()
         self.master.signal(signal.SIGCONT)
         until(self.pressed, "the force again")
+        # Each finds out by itself: the injector may be later than those who make the force.
+        until(lambda: not any(self.lost()), "that the master is back")
 
     def test_3_without_a_master_and_with_one_that_does_not_know_the_nodes_all_rests(self):
         self.begin_pulse()
