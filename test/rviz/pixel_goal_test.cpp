@@ -54,10 +54,10 @@ class PixelGoalTest : public testing::Test {
     world().repeat("microscope/image_raw", image);
     run(0.2);
   }
-  /// Into the middle of the image, and as long after it as a click may become a double click.
+  /// Into the middle of the image.
   void clickImage() {
     user_->click(user_->placeOf(*user_->shown<MicroscopeView>().at(0)));
-    QTest::qWait(QApplication::doubleClickInterval() + 50);
+    QApplication::processEvents();
     run(0.2);
   }
   void click(const std::string& button) {
