@@ -119,7 +119,7 @@ class SensorTable {
       for (int i = 0; i < count; ++i) means.col(block) += sensor.sample({0, 0}, period_) / count;
     }
     for (int axis = 0; axis < 2; ++axis) {
-      const Drift found = driftOf(means.row(axis), kBlock, density_[axis]);
+      const DriftFigures found = driftOf(means.row(axis), kBlock, density_[axis]);
       row(kAxes[axis] + std::string(" drift rate"), config_.drift_rate[axis], found.rate, "N/s");
       row(kAxes[axis] + std::string(" random walk"), config_.random_walk[axis], found.random_walk, "N/sqrt(s)");
     }

@@ -62,14 +62,14 @@ double depthOf(int call, int steps, double deepest) {
   return deepest * (at < steps ? at + 1 : 2 * steps - 1 - at) / steps;
 }
 
-Row rowOf(const std::string& model, const P1Cell& cell) {
+Row rowOf(const std::string& model, const PaperCell& cell) {
   return {model, "p1", cell.mesh.vertices.size(), cell.mesh.tetrahedra.size(), {}, {}};
 }
 
 /// One force: the equilibrium at the needle's next place, a fiftieth of the way to the deepest from
 /// the last one.
 std::string quasiStatic(const std::string& model, const ReferenceScene& scene, const PaperMesh& mesh) {
-  const P1Cell cell = makeP1Cell(scene.scene, mesh);
+  const PaperCell cell = makePaperCell(scene.scene, mesh);
   Row row = rowOf(model, cell);
   P1QuasiStatic solver(scene.scene, cell);
   double deepest = 0;
@@ -97,7 +97,7 @@ int settledAfter(const std::vector<double>& forces, double share) {
 /// one.
 std::string explicitDynamics(const ReferenceScene& scene, const PaperMesh& mesh) {
   constexpr int kRamp = 200;
-  const P1Cell cell = makeP1Cell(scene.scene, mesh);
+  const PaperCell cell = makePaperCell(scene.scene, mesh);
   Row row = rowOf("st_venant_kirchhoff_disc explicit step", cell);
   const MaterialConfig& material = scene.scene.cell.material();
   ExplicitStepConfig config;

@@ -37,7 +37,7 @@ std::vector<int> nearestVertices(const SurfaceMesh& surface, const Eigen::Vector
 
 }  // namespace
 
-P1Cell makeP1Cell(const Scene& scene, const PaperMesh& mesh) {
+PaperCell makePaperCell(const Scene& scene, const PaperMesh& mesh) {
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   const Scene::Refinement& refinement = scene.mesh.refinement;
   const double tip = scene.needle.tip.radius, zone = refinement.zone * tip;
@@ -48,7 +48,7 @@ P1Cell makeP1Cell(const Scene& scene, const PaperMesh& mesh) {
   config.growth = mesh.growth;
   config.stretch = mesh.stretch;
   if (mesh.circles) config.imprints = {{{0, 0}, tip, +1}, {{0, 0}, scene.holding_pipette.contact_radius, -1}};
-  P1Cell cell;
+  PaperCell cell;
   cell.mesh = MeshCache().get(config);
   const SurfaceMesh surface = extractSurface(cell.mesh);
   cell.tip = findTipPatch(surface, scene.radius() * up, up, tip).vertices;
@@ -58,7 +58,7 @@ P1Cell makeP1Cell(const Scene& scene, const PaperMesh& mesh) {
   return cell;
 }
 
-P1QuasiStatic::P1QuasiStatic(const Scene& scene, const P1Cell& cell)
+P1QuasiStatic::P1QuasiStatic(const Scene& scene, const PaperCell& cell)
     : body_(std::make_shared<LayeredBody<3>>(makeQuadratic(cell.mesh, std::vector<double>{scene.radius()}),
                                              ElementKind::kP1,
                                              LayeredBody<3>::Materials{makeMaterial(scene.cell.material())})) {

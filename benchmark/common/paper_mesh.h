@@ -27,18 +27,18 @@ const std::vector<PaperMesh>& paperMeshes();
 
 /// Linear tetrahedra of a scene with a disc, its sticking vertices found as the live cell finds
 /// them; held by three at least.
-struct P1Cell {
+struct PaperCell {
   TetMesh mesh;
   std::vector<int> tip, held;
 };
 
-P1Cell makeP1Cell(const Scene& scene, const PaperMesh& mesh);
+PaperCell makePaperCell(const Scene& scene, const PaperMesh& mesh);
 
 /// Quasi-static P1 of a scene's outermost material, with the live cell's solver
-/// (cell/model/indentation.h) on any P1Cell.
+/// (cell/model/indentation.h) on any PaperCell.
 class P1QuasiStatic {
  public:
-  P1QuasiStatic(const Scene& scene, const P1Cell& cell);
+  P1QuasiStatic(const Scene& scene, const PaperCell& cell);
 
   /// N, of the cell on the needle, along z; nan where no equilibrium was found.
   double force(double depth);

@@ -67,7 +67,7 @@ SecondOrder secondOrderOfStep(const Eigen::VectorXd& response, double sample_rat
   return {omega / (2 * M_PI), -(p + q).real() / (2 * omega)};
 }
 
-Drift driftOf(const Eigen::VectorXd& block_means, double block, double density) {
+DriftFigures driftOf(const Eigen::VectorXd& block_means, double block, double density) {
   const Eigen::Index n = block_means.size() - 1;
   const Eigen::VectorXd change = block_means.tail(n) - block_means.head(n);
   const double mean = change.mean();

@@ -32,7 +32,7 @@ struct SecondOrder {
 /// slower than half the sample rate.
 SecondOrder secondOrderOfStep(const Eigen::VectorXd& response, double sample_rate);
 
-struct Drift {
+struct DriftFigures {
   double rate = 0;         ///< N/s
   double random_walk = 0;  ///< N/sqrt(s)
 };
@@ -40,6 +40,6 @@ struct Drift {
 /// Drift from the means of blocks of `block` seconds. Two neighbouring means of a random walk k
 /// differ by a variance of 2/3 k^2 T. White noise of the given one-sided density (N/sqrt(Hz)) adds
 /// density^2 / T, which is subtracted.
-Drift driftOf(const Eigen::VectorXd& block_means, double block, double density);
+DriftFigures driftOf(const Eigen::VectorXd& block_means, double block, double density);
 
 }  // namespace microinjection

@@ -26,13 +26,13 @@ constexpr double kShare = 0.9;   ///< of the time step to the bound
 
 struct Case {
   Scene scene;
-  P1Cell cell;
+  PaperCell cell;
   ExplicitStepConfig config;
   double bound;  ///< rad/s
 
   explicit Case(const PaperMesh& mesh) {
     scene.cell.material().model = "st_venant_kirchhoff";
-    cell = makeP1Cell(scene, mesh);
+    cell = makePaperCell(scene, mesh);
     const MaterialConfig& material = scene.cell.material();
     config.lame = Lame::from(material.young_modulus, material.poisson_ratio);
     config.held = cell.held;

@@ -32,7 +32,7 @@ struct Times {
 };
 
 /// Off line: tensors (or what the kernel has instead), lumped masses, stable time step.
-Times timesOf(const P1Cell& cell, ExplicitStepConfig config, Force force) {
+Times timesOf(const PaperCell& cell, ExplicitStepConfig config, Force force) {
   config.force = force;
   const auto prepare = [&] {
     config.time_step = kSafety * 2 / frequencyBound(cell.mesh, config.lame, config.density);
@@ -53,7 +53,7 @@ std::string times(const Times& t) {
 
 std::string row(const PaperMesh& mesh) {
   Scene scene;
-  const P1Cell cell = makeP1Cell(scene, mesh);
+  const PaperCell cell = makePaperCell(scene, mesh);
   const MaterialConfig& material = scene.cell.material();
   ExplicitStepConfig config;
   config.lame = Lame::from(material.young_modulus, material.poisson_ratio);

@@ -24,7 +24,7 @@ constexpr double kDeepest = 20e-6;    ///< m
 std::string row(const PaperMesh& mesh, const std::string& model) {
   Scene scene;
   scene.cell.material().model = model;
-  const P1Cell cell = makeP1Cell(scene, mesh);
+  const PaperCell cell = makePaperCell(scene, mesh);
   P1QuasiStatic solver(scene, cell);
   double reached = 0, force = std::numeric_limits<double>::quiet_NaN(), jacobian = 1, jacobian_at_1um = 1;
   for (int i = 1; i * kStep <= kDeepest; ++i) {

@@ -41,8 +41,8 @@ void solveSteps(const PeerCase& peer_case, const Solve& solve, PeerResult& resul
   }
 }
 
-P1Cell linearCell(const PeerCase& peer_case) {
-  P1Cell cell;
+PaperCell linearCell(const PeerCase& peer_case) {
+  PaperCell cell;
   cell.mesh.vertices = peer_case.nodes;
   for (const PeerCase::Element& element : peer_case.elements) {
     cell.mesh.tetrahedra.push_back({element.nodes[0], element.nodes[1], element.nodes[2], element.nodes[3]});
@@ -116,7 +116,7 @@ void solveExplicit(const PeerCase& peer_case, PeerResult& result) {
   if (peer_case.order != 1 || peer_case.layers.size() != 1 || peer_case.layers[0].law != "st_venant_kirchhoff") {
     throw Declined("linear tetrahedra of one St-Venant-Kirchhoff layer only");
   }
-  const P1Cell cell = linearCell(peer_case);
+  const PaperCell cell = linearCell(peer_case);
   ExplicitStepConfig config;
   config.lame = Lame::from(peer_case.layers[0].young_modulus, peer_case.layers[0].poisson_ratio);
   double lowest = 0;

@@ -68,7 +68,7 @@ void addPaperMesh(const Scene& scene, int row, PeerCase& result) {
   if (scene.cell.layers.size() != 1 || scene.needle.tip.rounded()) {
     throw std::runtime_error("a mesh of the paper is for a homogeneous cell under a disc");
   }
-  const P1Cell cell = makeP1Cell(scene, paperMeshes().at(row));
+  const PaperCell cell = makePaperCell(scene, paperMeshes().at(row));
   result.dimension = 3;
   result.order = 1;
   result.nodes = cell.mesh.vertices;

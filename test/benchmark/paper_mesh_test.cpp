@@ -48,7 +48,7 @@ TEST(PaperMesh, HasTheSizesOfTableThree) {
     const PaperMesh& mesh = paperMeshes()[i];
     EXPECT_EQ(mesh.vertices, paper[i].first);
     EXPECT_EQ(mesh.tetrahedra, paper[i].second);
-    const P1Cell cell = makeP1Cell(scene, mesh);
+    const PaperCell cell = makePaperCell(scene, mesh);
     EXPECT_NEAR(cell.mesh.vertices.size(), paper[i].first, kOff * paper[i].first);
     EXPECT_NEAR(cell.mesh.tetrahedra.size(), paper[i].second, kOff * paper[i].second);
     EXPECT_GE(cell.tip.size(), 1u);
@@ -60,7 +60,7 @@ TEST(PaperMesh, IsRefinedAboutTheNeedle) {
   const Scene scene;
   const double diameter = 2 * scene.needle.tip.radius, zone = 5 * diameter;
   for (const PaperMesh& mesh : paperMeshes()) {
-    const P1Cell cell = makeP1Cell(scene, mesh);
+    const PaperCell cell = makePaperCell(scene, mesh);
     const auto [inside, outside] = insideAndOutside(cell.mesh, scene.radius() * Eigen::Vector3d::UnitZ(), zone / 2);
     SCOPED_TRACE(std::to_string(mesh.tetrahedra) + " tetrahedra");
     EXPECT_NEAR(inside.mean(), mesh.size / 5, 0.4 * mesh.size / 5);

@@ -96,7 +96,7 @@ TEST(StreamEstimates, DriftIsToldFromWhiteNoise) {
     for (int i = 0; i < 100; ++i) sum += sensor.sample({0, 0}, 0.01);
     means.col(block) = sum / 100;
   }
-  const Drift axial = driftOf(means.row(0), 1, config.density[0]);
+  const DriftFigures axial = driftOf(means.row(0), 1, config.density[0]);
   expectWithin(axial.rate, 0.5e-9);
   expectWithin(axial.random_walk, 0.5e-9);
   expectWithin(driftOf(means.row(1), 1, config.density[1]).rate, 2e-9);

@@ -6,7 +6,7 @@
 
 #include "base/config_reader.h"
 #include "session/session_choices.h"
-#include "session_files.h"
+#include "session_folder.h"
 
 namespace microinjection {
 namespace {

@@ -6,14 +6,14 @@
 
 #include "base/config_reader.h"
 #include "session/parameter_tree.h"
-#include "session_files.h"
+#include "session_folder.h"
 
 namespace microinjection {
 namespace {
 
 using tinyxml2::XMLElement;
 
-class LaunchFileTest : public SessionFiles {
+class LaunchFileTest : public SessionFolder {
  protected:
   const XMLElement* launch(const std::vector<std::string>& arguments, const std::string& view_file = "") {
     const SessionPlan plan = planOf(session(arguments), SessionClock::kWall);

@@ -7,7 +7,7 @@
 
 #include "base/config_reader.h"
 #include "session/parameter_tree.h"
-#include "session_files.h"
+#include "session_folder.h"
 
 namespace microinjection {
 namespace {
@@ -44,7 +44,7 @@ double numberOr(const YAML::Node& map, const std::string& path, double otherwise
 
 bool has(const YAML::Node& map, const std::string& path) { return parameterAt(map, path).IsDefined(); }
 
-class SessionFitTest : public SessionFiles {
+class SessionFitTest : public SessionFolder {
  protected:
   SessionFit fit(const std::string& scene, const std::string& overrides = "", std::vector<std::string> arguments = {},
                  const YAML::Node& device = YAML::Node(YAML::NodeType::Map)) {

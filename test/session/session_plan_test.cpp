@@ -4,14 +4,14 @@
 
 #include "base/config_reader.h"
 #include "session/parameter_tree.h"
-#include "session_files.h"
+#include "session_folder.h"
 
 namespace microinjection {
 namespace {
 
 using Names = std::vector<std::string>;
 
-class SessionPlanTest : public SessionFiles {
+class SessionPlanTest : public SessionFolder {
  protected:
   static SessionPlan plan(const std::vector<std::string>& arguments = {}, SessionClock clock = SessionClock::kWall) {
     return planOf(session(arguments), clock);

@@ -7,12 +7,12 @@
 #include "session/session_choices.h"
 #include "session/session_plan.h"
 #include "session/session_reader.h"
-#include "session_files.h"
+#include "session_folder.h"
 
 namespace microinjection {
 namespace {
 
-class SessionTest : public SessionFiles {
+class SessionTest : public SessionFolder {
  protected:
   std::string refused(const std::vector<std::string>& arguments) {
     return refusalOf([&] { session(arguments); });

@@ -6,7 +6,7 @@ namespace {
 /// A hand leads the needle. Whichever node is killed or frozen: within the time-outs of config/ the needle rests and
 /// the force on the hand is zero. The way back is the same to every time-out, since nobody knows of the hand's phases.
 struct HandFault {
-  Fault fault;
+  NodeFault fault;
   const char* phase;
   double into;  // s
 };
@@ -66,12 +66,12 @@ TEST_P(DeadByHand, CellSimulator) {
 }
 
 INSTANTIATE_TEST_SUITE_P(InAnyPhase, DeadByHand,
-                         testing::Values(HandFault{Fault::kKill, "approach", 0.06},
-                                         HandFault{Fault::kKill, "indent", 0.2},
-                                         HandFault{Fault::kFreeze, "indent", 0.2}));
+                         testing::Values(HandFault{NodeFault::kKill, "approach", 0.06},
+                                         HandFault{NodeFault::kKill, "indent", 0.2},
+                                         HandFault{NodeFault::kFreeze, "indent", 0.2}));
 
 /// Faults in one place of the motion.
-class FaultByHand : public testing::TestWithParam<Fault> {};
+class FaultByHand : public testing::TestWithParam<NodeFault> {};
 
 TEST_P(FaultByHand, BridgeLeavesNoForceOnTheHand) {
   HandSession session({});
@@ -120,7 +120,7 @@ TEST_P(FaultByHand, WhatTheLoopDoesNotNeedLeavesItAsItIs) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(KillAndFreeze, FaultByHand, testing::Values(Fault::kKill, Fault::kFreeze));
+INSTANTIATE_TEST_SUITE_P(KillAndFreeze, FaultByHand, testing::Values(NodeFault::kKill, NodeFault::kFreeze));
 
 /// A node that wakes up finds old messages and knows what was when it was frozen.
 struct Sleeper {
@@ -135,7 +135,7 @@ TEST_P(ThawedNode, ActsOnNothingOldAndFollowsFromWhereItIs) {
   HandSession session({});
   const auto height = [&] { return session.needle().values.back().z(); };
   session.runIntoPhase("approach", 0.06);
-  session.strike(GetParam().node, Fault::kFreeze);
+  session.strike(GetParam().node, NodeFault::kFreeze);
   session.session().run(0.3);  // the hand is 4 um deeper, indents, and goes on by 17 nm each millisecond
   const double rests = height();
   session.session().executive().thaw(GetParam().node);

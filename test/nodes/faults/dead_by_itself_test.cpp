@@ -25,7 +25,7 @@ class InjectionSession : public FaultSession {
 };
 
 struct OwnFault {
-  Fault fault;
+  NodeFault fault;
   const char* state;
   double into;  // s
 };
@@ -71,13 +71,13 @@ TEST_P(DeadByItself, CellSimulatorWithoutWhichItOnlyWithdraws) {
 }
 
 INSTANTIATE_TEST_SUITE_P(InAnyState, DeadByItself,
-                         testing::Values(OwnFault{Fault::kKill, "approach", 0.1},
-                                         OwnFault{Fault::kKill, "indent", 0.06},
-                                         OwnFault{Fault::kKill, "withdraw", 0.06},
-                                         OwnFault{Fault::kFreeze, "indent", 0.06},
-                                         OwnFault{Fault::kFreeze, "withdraw", 0.06}));
+                         testing::Values(OwnFault{NodeFault::kKill, "approach", 0.1},
+                                         OwnFault{NodeFault::kKill, "indent", 0.06},
+                                         OwnFault{NodeFault::kKill, "withdraw", 0.06},
+                                         OwnFault{NodeFault::kFreeze, "indent", 0.06},
+                                         OwnFault{NodeFault::kFreeze, "withdraw", 0.06}));
 
-class DeadInAPulse : public testing::TestWithParam<Fault> {
+class DeadInAPulse : public testing::TestWithParam<NodeFault> {
  protected:
   static constexpr double kPulseTimeout = 0.2;  // s, of a pulse that the controller holds
   static constexpr double kBalance = 545;       // Pa
@@ -126,7 +126,7 @@ TEST_P(DeadInAPulse, EndsWhereTheForceIsNotKnown) {
 
 TEST_P(DeadInAPulse, InjectorThatDiesLeavesTheNeedleWhereItIs) { expectNeedleStays(strike("injector")); }
 
-INSTANTIATE_TEST_SUITE_P(KillAndFreeze, DeadInAPulse, testing::Values(Fault::kKill, Fault::kFreeze));
+INSTANTIATE_TEST_SUITE_P(KillAndFreeze, DeadInAPulse, testing::Values(NodeFault::kKill, NodeFault::kFreeze));
 
 }  // namespace
 }  // namespace microinjection

@@ -4,7 +4,7 @@ namespace microinjection {
 namespace {
 
 /// Hand and rig with packets between them, as on two machines.
-class DeadOverLink : public testing::TestWithParam<Fault> {
+class DeadOverLink : public testing::TestWithParam<NodeFault> {
  protected:
   DeadOverLink() : session_(linked()) { session_.runIntoPhase("indent", 0.2); }
 
@@ -53,7 +53,7 @@ TEST_P(DeadOverLink, Hand) {
   expectForceEnds(HandSession::kInputs, HandSession::sooner(GetParam()));
 }
 
-INSTANTIATE_TEST_SUITE_P(KillAndFreeze, DeadOverLink, testing::Values(Fault::kKill, Fault::kFreeze));
+INSTANTIATE_TEST_SUITE_P(KillAndFreeze, DeadOverLink, testing::Values(NodeFault::kKill, NodeFault::kFreeze));
 
 }  // namespace
 }  // namespace microinjection

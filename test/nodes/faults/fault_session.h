@@ -19,11 +19,11 @@
 namespace microinjection {
 
 /// How a node drops out.
-enum class Fault {
+enum class NodeFault {
   kKill,    ///< as by SIGKILL
   kFreeze,  ///< as by SIGSTOP; to the others it is as silent
 };
-inline void PrintTo(Fault fault, std::ostream* out) { *out << (fault == Fault::kKill ? "kill" : "freeze"); }
+inline void PrintTo(NodeFault fault, std::ostream* out) { *out << (fault == NodeFault::kKill ? "kill" : "freeze"); }
 
 /// Where a needle, a hand or a force was, by the time of arrival (s).
 struct Track {
@@ -68,8 +68,8 @@ class FaultSession {
   VirtualSession& session() { return session_; }
 
   /// Between two steps of all nodes, after which the node says nothing more. @returns the time (s)
-  double strike(const std::string& node, Fault fault) {
-    fault == Fault::kKill ? session_.executive().kill(node) : session_.executive().freeze(node);
+  double strike(const std::string& node, NodeFault fault) {
+    fault == NodeFault::kKill ? session_.executive().kill(node) : session_.executive().freeze(node);
     return session_.now().toSec();
   }
   /// To a phase of the virtual hand's motion, and some seconds into it.

@@ -27,7 +27,7 @@ class HandSession : public FaultSession {
 
   /// s, by which the force may end before the time-out when the hand is struck: of a killed process the connection ends
   /// at once, which the bridge looks at each 50 ms.
-  static double sooner(Fault fault) { return fault == Fault::kKill ? 0.05 : 0; }
+  static double sooner(NodeFault fault) { return fault == NodeFault::kKill ? 0.05 : 0; }
 
  private:
   static std::vector<std::string> overrides(const Options& options) {

@@ -14,7 +14,7 @@
 namespace microinjection {
 
 /// What a session is scored by.
-struct TrainingMeasure {
+struct RecordedMeasure {
   std::string name;             ///< in training.yaml and the history
   std::string task;             ///< the key of its reference
   double value = 0;             ///< SI
@@ -22,7 +22,7 @@ struct TrainingMeasure {
 };
 
 /// The measures, from the rows of a session's table and nothing else: an oracle for those that the recorder writes.
-inline std::vector<TrainingMeasure> trainingMeasures(const std::vector<CsvRows::Row>& all) {
+inline std::vector<RecordedMeasure> trainingMeasures(const std::vector<CsvRows::Row>& all) {
   using Row = CsvRows::Row;
   using Point = std::array<double, 3>;
   const auto number = [](const Row& row, const std::string& name) {

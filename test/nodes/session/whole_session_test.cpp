@@ -153,7 +153,7 @@ TEST_F(WholeSessionTest, TheSessionIsScored) {
   EXPECT_EQ(history[0], history[1]);
   EXPECT_EQ(history[1].at("operator"), "ada");
   double points = 0;
-  for (const TrainingMeasure& measure : trainingMeasures(rows())) {
+  for (const RecordedMeasure& measure : trainingMeasures(rows())) {
     SCOPED_TRACE(measure.name);
     const YAML::Node row = told["measures"][measure.name];
     EXPECT_NEAR(row["value"].as<double>() / measure.value, 1, 1e-5);

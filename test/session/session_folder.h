@@ -26,16 +26,16 @@ inline std::string refusalOf(const std::function<void()>& call) {
 }
 
 /// A test with a folder of its own for files.
-class SessionFiles : public testing::Test {
+class SessionFolder : public testing::Test {
  protected:
-  SessionFiles() {
+  SessionFolder() {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
     folder_ = std::filesystem::path(testing::TempDir()) /
               (std::string("session_test_") + test->test_suite_name() + "_" + test->name());
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_);
   }
-  ~SessionFiles() override { std::filesystem::remove_all(folder_); }
+  ~SessionFolder() override { std::filesystem::remove_all(folder_); }
 
   std::string file(const std::string& name, const std::string& text) const {
     const std::filesystem::path path = folder_ / name;
