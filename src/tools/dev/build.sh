@@ -41,9 +41,8 @@ link_package() {
 
 # Builds and installs all but tests and benchmarks, then takes the workspace's environment on.
 build_workspace() {
-  # An installation never forgets by itself a file that has since been renamed.
-  rm -rf "$WORKSPACE"/install/share/cell_microinjection/{launch,config,urdf}
   build_targets install
+  forget_renamed
   source_workspace
 }
 
@@ -52,6 +51,12 @@ build_tests() {
   build_workspace
   build_targets tests
   install_component tests
+}
+
+# An installation never forgets by itself a file that has since been renamed. What CMake has not listed goes.
+forget_renamed() {
+  comm -23 <(find "$WORKSPACE/install" -type f ! -name .catkin ! -name '*.pyc' | sort) <(sort -u "$WORKSPACE"/build/install_manifest*.txt) |
+    xargs -r -d '\n' rm
 }
 
 # What is installed on request only.
