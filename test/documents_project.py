@@ -66,7 +66,7 @@ class Project:
         self.read_programs()
         self.read_nodes()
         self.keys = {key for path, text in self.code.items() if path.endswith('.yaml') for key in keys_of(text)}
-        self.keys |= set(re.findall(r'<param[^>]* name="([a-z_/]+)"', self.sources('launch/*', 'launch/haptic/*')))
+        self.keys |= set(re.findall(r'<param[^>]* name="([a-z_/]+)"', self.sources('launch/*')))
         self.keys |= set(re.findall(r'"([a-z_]+(?:/[a-z_]+)+)"', self.sources('src/session/session_planner.cpp')))
 
     def text(self, path):

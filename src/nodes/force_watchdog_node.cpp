@@ -1,5 +1,8 @@
 #include "nodes/force_watchdog_node.h"
 
+#include "nodes/haptic/crtk_adapter.h"
+#include "nodes/haptic/geomagic_adapter.h"
+#include "nodes/haptic/omni_adapter.h"
 #include "nodes/runtime/node_parameters.h"
 #include "nodes/runtime/stamps.h"
 
@@ -10,7 +13,7 @@ const char* const ForceWatchdogNode::kHelp =
     "In and out: /haptic/servo_cf, or /DEVICE/force_feedback of a driver.\n"
     "Parameters:\n"
     "  ~kind        of the device: crtk (default), omni or geomagic\n"
-    "  ~device      namespace of the driver's topics; default haptic for crtk, else that of the adapter\n"
+    "  ~device      namespace of the driver's topics; default: haptic, phantom or Geomagic, as ~kind is\n"
     "  ~force       for crtk: topic of the force below the device, default servo_cf\n"
     "  ~from_start  also before another node's first force, default true; false for an arm that falls at\n"
     "               the first force unless it has its settings\n"
@@ -21,8 +24,9 @@ ForceWatchdogNode::Parameters ForceWatchdogNode::Parameters::read(const Bus& bus
   Parameters parameters;
   ConfigReader reader = parameterReader(bus);
   reader.choice("kind", parameters.kind, {"crtk", "omni", "geomagic"});
-  const YAML::Node device = bus.parameter("haptic_device/device");
-  if (parameters.kind != "crtk" && device.IsScalar()) parameters.device = device.Scalar();
+  parameters.device = parameters.kind == "omni"       ? OmniConfig().device
+                      : parameters.kind == "geomagic" ? GeomagicConfig().device
+                                                      : CrtkConfig().device;
   reader.text("device", parameters.device);
   reader.text("force", parameters.force);
   reader.boolean("from_start", parameters.from_start);

@@ -23,7 +23,7 @@ class ForceWatchdogNode {
 
  private:
   struct Parameters {
-    std::string kind = "crtk", device = "haptic", force = "servo_cf";
+    std::string kind = "crtk", device, force = "servo_cf";
     bool from_start = true;
     double timeout = 0.05;  // s
     double rate = 200;      // Hz

@@ -228,6 +228,7 @@ class Planner {
       setText(node, "device", deviceNamespace());
     } else {
       setParameter(node.parameters, "kind", parameterAt(device_, "haptic_device/kind"));
+      if (const YAML::Node device = adapterDevice(); device.IsDefined()) setParameter(node.parameters, "device", device);
     }
   }
 
@@ -250,8 +251,12 @@ class Planner {
 
   std::string deviceNamespace() const {
     if (session_.hand.topics.name_space != "auto") return session_.hand.topics.name_space;
-    const YAML::Node of_file = parameterAt(device_, "haptic_device/device");
-    return of_file.IsDefined() && of_file.IsScalar() ? of_file.Scalar() : "/haptic";
+    const YAML::Node device = adapterDevice();
+    return device.IsDefined() && device.IsScalar() ? device.Scalar() : "/haptic";
+  }
+  YAML::Node adapterDevice() const {
+    const YAML::Node device = parameterAt(session_.overrides, "haptic_device/device");
+    return device.IsDefined() ? device : parameterAt(device_, "haptic_device/device");
   }
   /// A device without an adapter has the topics of ours under names of its own.
   void addDeviceRemaps(Remaps& remaps) const {

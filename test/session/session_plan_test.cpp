@@ -185,7 +185,15 @@ TEST_F(SessionPlanTest, NodesOfEachHand) {
     EXPECT_EQ(takesPart(live, "operator"), hand == "operator") << hand;
     EXPECT_EQ(takesPart(live, "haptic_bridge"), hand != "none") << hand;
   }
-  EXPECT_EQ(at(plan({"hand.device:=omni"}), "force_watchdog", "kind"), "omni");
+  const SessionPlan omni = plan({"hand.device:=omni"});
+  EXPECT_EQ(at(omni, "force_watchdog", "kind"), "omni");
+  EXPECT_EQ(at(omni, "force_watchdog", "device"), "phantom");
+  // The watchdog follows the adapter to another device.
+  for (const std::string& hand : {"omni", "dvrk"}) {
+    const SessionPlan other = plan({"hand.device:=" + hand, "overrides.haptic_device.device:=left"});
+    EXPECT_EQ(at(other, "haptic_device", "device"), "left") << hand;
+    EXPECT_EQ(at(other, "force_watchdog", "device"), "left") << hand;
+  }
 }
 
 TEST_F(SessionPlanTest, EachSourceOfImages) {

@@ -38,10 +38,8 @@ void expectComplete(const OmniFeedback&) {}
 template <typename Message>
 class WatchedForce {
  public:
-  /// `device`: that of the adapter, where the watchdog looks for it.
-  WatchedForce(const std::string& parameters, std::string topic, const std::string& device = "")
+  WatchedForce(const std::string& parameters, std::string topic)
       : topic_(std::move(topic)), bridge_(session_.addTestNode("bridge")) {
-    if (!device.empty()) session_.executive().network().setParameter("/haptic_device/device", YAML::Node(device));
     session_.world().hear<Message>(topic_);
     bridge_.publisher<Message>(topic_);
     session_.add("force_watchdog", "force_watchdog", YAML::Load(parameters));
@@ -93,13 +91,13 @@ TEST(ForceWatchdog, GivesZeroForceBeforeAndAfterTheBridge) {
 }
 
 TEST(ForceWatchdog, GivesZeroForceToAnOmni) {
-  WatchedForce<OmniFeedback> force("{kind: omni}", "phantom/force_feedback", "phantom");
+  WatchedForce<OmniFeedback> force("{kind: omni}", "phantom/force_feedback");
   force.expectZeroAgainAndAgain();
   force.expectZeroOnlyInSilence();
 }
 
 TEST(ForceWatchdog, GivesZeroForceToAGeomagic) {
-  WatchedForce<DeviceFeedback> force("{kind: geomagic}", "Geomagic/force_feedback", "Geomagic");
+  WatchedForce<DeviceFeedback> force("{kind: geomagic, device: Left}", "Left/force_feedback");
   force.expectZeroAgainAndAgain();
   force.expectZeroOnlyInSilence();
 }
