@@ -228,7 +228,8 @@ class Planner {
       setText(node, "device", deviceNamespace());
     } else {
       setParameter(node.parameters, "kind", parameterAt(device_, "haptic_device/kind"));
-      if (const YAML::Node device = adapterDevice(); device.IsDefined()) setParameter(node.parameters, "device", device);
+      if (const YAML::Node device = adapterDevice(); device.IsDefined())
+        setParameter(node.parameters, "device", device);
     }
   }
 
