@@ -61,6 +61,11 @@ def quantile(bins, share):
     return float('nan')
 
 
+def check_runs(device):
+    if not device.running():
+        raise SessionError(f'the device has ended: {device.tail(5)}')
+
+
 def measure(kind, arguments, folder):
     """Returns {what: (count, late, {upper edge in s: count})} of one device."""
     logs = arguments.out / 'log'
@@ -78,14 +83,15 @@ def measure(kind, arguments, folder):
                        logs / 'device.log')
         histograms = Histograms(SOURCES)
         time.sleep(SETTLE)
-        if not wait_until(histograms.complete, 20):
+        complete = wait_until(histograms.complete, 20)
+        check_runs(device)
+        if not complete:
             raise SessionError(f'no histograms came but of {sorted(histograms.newest)}; see {logs}')
         before = dict(histograms.newest)
         end = time.monotonic() + arguments.seconds
         while time.monotonic() < end:
             session.check()
-            if not device.running():
-                raise SessionError(f'the device has ended: {device.tail(5)}')
+            check_runs(device)
             time.sleep(min(1, max(0, end - time.monotonic())))
         return {source: difference(before[source], histograms.newest[source]) for source in SOURCES}
     finally:
