@@ -19,11 +19,6 @@ constexpr double kSameSize = 1e-6;  ///< relative, of a parameter that has not c
 constexpr double kDetection = 0.1;  ///< s, in which a puncture is detected: its readings are no cell's
 constexpr double kApart = 0.3e-6;   ///< m, of the needle between the times of position and force
 
-/// Whether `period` (s) has passed; also when time was set back.
-bool isDue(const ros::Time& last, const ros::Time& now, double period) {
-  return last.isZero() || now < last || secondsBetween(last, now) >= period;
-}
-
 /// Moduli are what is estimated; the others are where the prior is.
 bool isModulus(const std::string& name) { return name == "young_modulus" || name == "core_modulus"; }
 

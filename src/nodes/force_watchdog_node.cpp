@@ -41,14 +41,14 @@ ForceWatchdogNode::ForceWatchdogNode(Bus& bus)
     : bus_(bus),
       parameters_(Parameters::read(bus)),
       force_(MonitoredForce::make(parameters_.kind, parameters_.device, parameters_.force, bus,
-                                  [this] { last_received_ = bus_.now(); })) {
+                                  [this] { last_received_ = bus_.steady(); })) {
   // No Cycle: it must also work when nothing else does. Forces that have arrived are heard before a step.
   bus.setStep(1 / parameters_.rate, [this](const ros::Time& now) { check(now); });
 }
 
 void ForceWatchdogNode::check(const ros::Time& now) {
   if (last_received_.isZero() && !parameters_.from_start) return;
-  if (secondsBetween(last_received_, now) >= parameters_.timeout) force_->publishZeroForce(now);
+  if (secondsBetween(last_received_, bus_.steady()) >= parameters_.timeout) force_->publishZeroForce(now);
 }
 
 }  // namespace microinjection

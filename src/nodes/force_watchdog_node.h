@@ -34,7 +34,7 @@ class ForceWatchdogNode {
 
   Bus& bus_;
   Parameters parameters_;
-  ros::Time last_received_;  ///< arrival of another node's last force
+  ros::SteadyTime last_received_;  ///< arrival of another node's last force
   std::unique_ptr<MonitoredForce> force_;
 };
 

@@ -215,7 +215,7 @@ void InjectionControllerNode::publishInjection(const ros::Time& now) {
   const auto& last = last_published_injection_;
   const bool same = status.state == last.state && status.waits == last.waits && status.punctures == last.punctures &&
                     status.outcome == last.outcome && status.notice == last.notice;
-  if (same && secondsBetween(last.header.stamp, now) < kPeriod) return;
+  if (same && !isDue(last.header.stamp, now, kPeriod)) return;
   injection_.publish(status);
   last_published_injection_ = status;
 }

@@ -139,7 +139,8 @@ void InjectorNode::onBalance(const sensor_msgs::FluidPressure& message) {
 void InjectorNode::endAbandonedPulse(const ros::Time& now) {
   const bool lost = !std::exchange(master_lost_, cycle_.masterLost()) && master_lost_;
   if (!device_->reading().busy) held_ = 0;
-  const bool silent = held_ != 0 && secondsBetween(last_repetition_, now) > parameters_.pulse_timeout;
+  const double age = secondsBetween(last_repetition_, now);  // much below 0: the clock was set back
+  const bool silent = held_ != 0 && (age > parameters_.pulse_timeout || age < -parameters_.command_timeout);
   if (!device_->reading().busy || !(lost || silent)) return;
   held_ = 0;
   ROS_WARN_STREAM("the pulse is ended: " << (lost ? "the ROS master is lost" : "its sender is stale"));

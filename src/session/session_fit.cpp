@@ -117,7 +117,16 @@ class Fit {
     if (factor == 1) return;
     for (const auto& [node, paths] : keys)
       for (const std::string& path : paths)
-        if (has(node, path)) setParameter(changed_, node + "/" + path, scaled(get(node, path), factor));
+        if (has(node, path)) scale(node, path, factor);
+  }
+  void scale(const std::string& node, const std::string& path, double factor) {
+    const YAML::Node value = get(node, path);
+    try {
+      setParameter(changed_, node + "/" + path, scaled(value, factor));
+    } catch (const YAML::Exception&) {
+      errors_.push_back(session_.hand.config + ": " + node + "/" + path + " = " + YAML::Dump(value) +
+                        ": must be a number, or a list of numbers");
+    }
   }
   static YAML::Node scaled(const YAML::Node& value, double factor) {
     if (!value.IsSequence()) return numberValue(roundedParameter(factor * value.as<double>()));
@@ -209,12 +218,16 @@ class Fit {
   }
 
   /// N, where the force of the simulated sensor is used.
-  double sensorRange() const {
+  double sensorRange() {
     const Session::Force& force = session_.force;
     const bool is_used = force.controller == "measured" || force.hand != "predicted";
     if (session_.sensor.source != "simulated" || !is_used) return std::numeric_limits<double>::infinity();
     const YAML::Node overridden = parameterAt(session_.overrides, "force_sensor/simulated/axial_range");
-    if (overridden.IsDefined()) return overridden.as<double>(0);
+    if (overridden.IsDefined()) {
+      if (const double range = overridden.as<double>(-1); range > 0) return range;
+      add("force_sensor/simulated/axial_range = " + YAML::Dump(overridden) + ": must be a number above 0");
+      return std::numeric_limits<double>::infinity();
+    }
     return parameterAt(loadYamlMap(session_.package + "/config/force_sensor.yaml"), "simulated/axial_range")
         .as<double>(0);
   }

@@ -11,6 +11,7 @@ namespace microinjection {
 namespace {
 
 constexpr int kImages = 10, kMoves = 5;  // nice: nodes of images, and those that move the needle by them
+constexpr char kKeyboard[] = "keyboard_hand";
 constexpr char kFemtojetCode[] = "901";  // invented for the emulator: that of the device is not published
 
 class Planner {
@@ -91,8 +92,8 @@ class Planner {
     setText(node, "rig", rig.device());
     setFlag(node, "allow_network", rig.allow_network);
     setFlag(node, "emulated", rig.emulated() && !is_process);
-    if (rig.port != "auto") setText(node, "device/port/path", rig.port);
-    if (rig.port == "auto" && rig.emulated()) setText(node, "device/port/path", terminal);
+    if (rig.real() && rig.port != "auto") setText(node, "device/port/path", rig.port);
+    if (rig.emulated()) setText(node, "device/port/path", terminal);
     if (is_process) {
       ForeignProcess emulator;
       emulator.name = rig.name;
@@ -216,6 +217,17 @@ class Planner {
     }
     if (live() && parameterAt(device_, "force_watchdog").IsDefined()) addWatchdog();
     if (parameterAt(device_, "haptic_device").IsDefined()) addAdapter();
+    if (parameterAt(device_, kKeyboard).IsDefined()) addKeyboard();
+  }
+
+  /// The operator starts it, in a terminal: the session has its parameters only.
+  void addKeyboard() {
+    YAML::Node parameters = emptyMap();
+    for (const YAML::Node& source : {device_, session_.overrides}) {
+      if (const YAML::Node of_keyboard = parameterAt(source, kKeyboard); of_keyboard.IsDefined())
+        mergeParameters(parameters, of_keyboard);
+    }
+    plan_.parameters[kKeyboard] = parameters;
   }
 
   /// Gives the device zero force in the place of a bridge or an adapter that was killed.

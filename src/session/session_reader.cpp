@@ -16,7 +16,9 @@ const Range kLayers = Range::closed(1, 10);
 
 void readRig(LayerSection section, SessionDraft& draft, const SessionChoices& choices) {
   Session::Rig& rig = draft.session.rig;
+  const std::string before = rig.device();
   section.choice("name", rig.name, choices.rigs);
+  if (rig.device() != before) rig.port = rig.config = kAuto;  // those of another device
   section.path("port", rig.port, kAutomatic);
   section.fileOrName("config", rig.config, kRigs, kAutomatic);
   section.existingFile("urdf", rig.urdf, kAutomatic);
@@ -24,7 +26,9 @@ void readRig(LayerSection section, SessionDraft& draft, const SessionChoices& ch
 }
 
 void readHand(LayerSection section, Session::Hand& hand, const SessionChoices& choices) {
+  const std::string before = hand.device;
   section.choice("device", hand.device, choices.hands);
+  if (hand.device != before) hand.config = hand.position_type = kAuto, hand.topics = {};  // those of another device
   section.existingFile("config", hand.config, kAutomatic);
   LayerSection topics = section.section("topics");
   topics.text("namespace", hand.topics.name_space);
@@ -125,8 +129,8 @@ Session resolved(SessionDraft draft) {
   session.rig.allow_network = draft.allow_network.value_or(modelled);
   setIfAuto(session.sensor.source, modelled ? "simulated" : "serial");
   setIfAuto(session.injector, modelled ? "simulated" : "serial");
-  const bool has_file = session.hand.present() && !session.hand.isOperator();
-  setIfAuto(session.hand.config, has_file ? package + "/config/haptic/" + session.hand.device + ".yaml" : "");
+  if (!session.hand.present() || session.hand.isOperator()) session.hand.config.clear();
+  setIfAuto(session.hand.config, package + "/config/haptic/" + session.hand.device + ".yaml");
   setIfAuto(session.force.hand, session.force.controller);
   setIfAuto(session.injection.mode, session.hand.present() ? "manual" : "automatic");
   session.injection.auto_enable = draft.auto_enable.value_or(modelled);

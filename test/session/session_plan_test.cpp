@@ -68,6 +68,9 @@ TEST_F(SessionPlanTest, AnEmulatedRigIsAProcessOrInside) {
   EXPECT_EQ(at(plan({"rig.name:=zaber", "rig.port:=/dev/ttyUSB0"}), "micromanipulator", "device/port/path"),
             "/dev/ttyUSB0");
   EXPECT_EQ(at(plan({"rig.name:=zaber"}), "micromanipulator", "device/port/path"), "/tmp/emulated_zaber");
+  // An emulated rig never moves the real one.
+  const SessionPlan dry = plan({"rig.name:=emulated_zaber", "rig.port:=/dev/ttyUSB0"});
+  EXPECT_EQ(at(dry, "micromanipulator", "device/port/path"), dry.processes.front().arguments[2]);
   EXPECT_EQ(at(plan({"rig.config:=imperfect"}), "micromanipulator", "device/backlash"), "1.0e-6");
 }
 
@@ -194,6 +197,13 @@ TEST_F(SessionPlanTest, NodesOfEachHand) {
     EXPECT_EQ(at(other, "haptic_device", "device"), "left") << hand;
     EXPECT_EQ(at(other, "force_watchdog", "device"), "left") << hand;
   }
+}
+
+TEST_F(SessionPlanTest, TheKeyboardInItsTerminalHasTheParametersOfTheSession) {
+  const SessionPlan session = plan({"hand.device:=keyboard", "overrides.keyboard_hand.step:=2.0e-3"});
+  EXPECT_EQ(parameterAt(session.parameters, "keyboard_hand/hand_speed").as<double>(), 0.01);
+  EXPECT_EQ(parameterAt(session.parameters, "keyboard_hand/step").as<double>(), 2e-3);
+  EXPECT_FALSE(parameterAt(plan({"hand.device:=omni"}).parameters, "keyboard_hand").IsDefined());
 }
 
 TEST_F(SessionPlanTest, EachSourceOfImages) {

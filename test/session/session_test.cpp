@@ -253,6 +253,27 @@ TEST_F(SessionTest, DefaultsFollowOtherKeys) {
   EXPECT_FALSE(session().link.emulated);
 }
 
+TEST_F(SessionTest, WhatBelongsToADeviceGoesWithIt) {
+  const std::string mine = file("mine.yaml", "haptic_device: {kind: omni}\n");
+  const std::string lab =
+      file("lab.yaml",
+           "version: 1\nrig: {name: zaber, port: /dev/ttyUSB0, config: imperfect}\n"
+           "hand: {device: dvrk, config: mine.yaml, topics: {namespace: /MTML}, position_type: pose}\n");
+  const Session real = Session::load(lab, {}, kPackage);
+  EXPECT_EQ(real.rig.port, "/dev/ttyUSB0");
+  EXPECT_EQ(real.hand.config, mine);
+  const Session emulated = Session::load(lab, {"rig.name:=emulated_zaber"}, kPackage);
+  EXPECT_EQ(emulated.rig.config, kPackage + "/config/rigs/imperfect.yaml") << "of the same device";
+  const Session other = Session::load(lab, {"rig.name:=sim", "hand.device:=joy"}, kPackage);
+  EXPECT_EQ(other.rig.port, "auto");
+  EXPECT_EQ(other.rig.config, kPackage + "/config/rigs/sim.yaml");
+  EXPECT_EQ(other.hand.config, kPackage + "/config/haptic/joy.yaml");
+  EXPECT_EQ(other.hand.topics.name_space, "auto");
+  EXPECT_EQ(other.hand.position_type, "auto");
+  for (const char* hand : {"none", "operator"})
+    EXPECT_EQ(session({std::string("hand.device:=") + hand, "hand.config:=" + mine}).hand.config, "") << hand;
+}
+
 TEST_F(SessionTest, ArgumentsAreKeysWithValues) {
   const Session session = this->session({"hand.device:=keyboard", "twin:=", "hand.topics:={namespace: /a, force: /b}",
                                          "overrides.injection_controller.motion.stab_speed:=5e-6"});

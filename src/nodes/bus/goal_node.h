@@ -78,7 +78,7 @@ class GoalNode {
       goal.setAccepted();
       return goal.setAborted(result, refusal);
     }
-    if (current_.isValid() && goal.getGoalID().stamp < current_.getGoalID().stamp)
+    if (active_ && goal.getGoalID().stamp < current_.getGoalID().stamp)
       return goal.setCanceled(Result(), "a newer goal has come before");
     if (active_) preempt();
     current_ = goal;

@@ -85,7 +85,12 @@ bool LocalBus::callRaw(const ServiceType& type, const std::string& service, void
   if (std::strcmp(found->second.type->md5, type.md5) != 0) return false;
   const RawAnswer answer = found->second.answer;
   found->second.owner->serve();  // what was sent before
-  return type.answer(answer, call);
+  try {
+    return type.answer(answer, call);
+  } catch (const std::exception& error) {  // as roscpp does
+    ROS_ERROR_STREAM(resolve(service) << " has failed: " << error.what());
+    return false;
+  }
 }
 
 BusHandle LocalBus::timer(double period, std::function<void()> task) {

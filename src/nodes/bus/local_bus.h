@@ -35,7 +35,7 @@ class LocalBus : public Bus {
   void onEnd(std::function<void()> task) override { end_ = std::move(task); }
   void stop() override { stopped_ = true; }
   bool isRunning() const override { return !stopped_; }
-  void setBusy(bool busy) override { busy_ = busy; }
+  void setBusy(bool) override {}
   bool waitUntil(const std::function<bool()>& done, double timeout) override;
   void pause(double) override {}
 
@@ -51,7 +51,6 @@ class LocalBus : public Bus {
   /// As if its process were stopped: it neither steps nor answers, and what arrives waits.
   void setFrozen(bool frozen) { frozen_ = frozen; }
   void setLost(bool lost) { lost_ = lost; }
-  bool isBusy() const { return busy_; }
   /// The node does not step before this time, as if the machine had delayed it.
   void holdUntil(const ros::Time& time) { held_until_ = time; }
 
@@ -101,7 +100,7 @@ class LocalBus : public Bus {
   ros::Time deadline_, held_until_, stepped_;
   unsigned driving_ = 0;  ///< subscriptions that start steps
   bool triggered_ = false;
-  bool connected_ = true, frozen_ = false, stopped_ = false, busy_ = false, lost_ = false;
+  bool connected_ = true, frozen_ = false, stopped_ = false, lost_ = false;
 };
 
 }  // namespace microinjection

@@ -9,7 +9,7 @@
 
 namespace microinjection {
 
-/// config/cell_estimator.yaml, and what the launch file sets.
+/// config/cell_estimator.yaml, and what a session sets.
 struct CellEstimatorParameters {
   std::string scene, families;
   double rate = 1000;

@@ -65,7 +65,7 @@ CellStatePublisher::~CellStatePublisher() {
 void CellStatePublisher::step(const CellMoment& moment) {
   if (thread_.joinable()) {
     moment_.write(moment);
-  } else if (secondsBetween(sent_, moment.now) >= period_) {
+  } else if (isDue(sent_, moment.now, period_)) {
     publish(moment);
     sent_ = moment.now;
   }

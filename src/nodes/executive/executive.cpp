@@ -22,7 +22,10 @@ constexpr int kMostPasses = 1000;
 Executive::Executive(double start) : network_(ros::Time() + durationOf(start)), start_(network_.now()) {}
 
 Executive::~Executive() {
-  for (auto member = members_.rbegin(); member != members_.rend(); ++member) destroy(**member);
+  for (auto member = members_.rbegin(); member != members_.rend(); ++member) {
+    (*member)->node.reset();
+    (*member)->bus.reset();
+  }
 }
 
 double Executive::time() const { return 1e-9 * static_cast<double>(network_.now().toNSec() - start_.toNSec()); }
@@ -53,6 +56,7 @@ void Executive::construct(Member& member) {
 }
 
 void Executive::destroy(Member& member) {
+  if (member.node.use_count() > 1) throw std::logic_error("the node " + member.name + " would outlive its bus");
   member.node.reset();
   member.bus.reset();
 }
@@ -110,7 +114,6 @@ void Executive::loseMaster(bool lost) {
 }
 
 void Executive::endAll() {
-  std::exception_ptr failure;
   for (auto member = members_.rbegin(); member != members_.rend(); ++member) {
     if (!(*member)->node) continue;
     try {

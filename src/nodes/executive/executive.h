@@ -72,7 +72,7 @@ class Executive {
     YAML::Node parameters;
     std::map<std::string, std::string> remaps;
     std::unique_ptr<LocalBus> bus;
-    std::shared_ptr<void> node;  ///< null: it has ended; destroyed before its bus
+    std::shared_ptr<void> node;  ///< null: it has ended; destroyed before its bus, and held by nobody else then
   };
 
   Member& member(const std::string& name);

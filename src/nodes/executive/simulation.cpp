@@ -62,6 +62,9 @@ void requireSimulable(const Session& session) {
     refuse("camera/source", session.camera.source, "none, sim, folder or video");
   if (session.display.rviz) refuse("display/rviz", "true", "false");
   if (session.display.console != "none") refuse("display/console", session.display.console, "none");
+  if (!session.injection.auto_enable) refuse("injection/auto_enable", "false", "true: nobody enables the needle");
+  if (!session.hand.present() && !session.injection.start_when_enabled)
+    refuse("injection/start_when_enabled", "false", "true: nobody starts the injection");
   if (problems.tellp() > 0) throw ConfigError(problems.str());
 }
 
@@ -70,8 +73,12 @@ SimulationResult simulate(const Session& session, const SimulationConfig& config
   using Clock = std::chrono::steady_clock;
   requireSimulable(session);
   Executive executive;
-  std::shared_ptr<SessionWatch> watch;
-  executive.add("simulation", [&](Bus& bus) { return watch = std::make_shared<SessionWatch>(bus); });
+  const SessionWatch* watch = nullptr;  // until the executive ends it
+  executive.add("simulation", [&](Bus& bus) {
+    const auto node = std::make_shared<SessionWatch>(bus);
+    watch = node.get();
+    return node;
+  });
   Session simulated = session;
   simulated.display.markers = false;  // nobody looks, and no record has them
   addNodes(executive, planOf(simulated, SessionClock::kVirtual));
@@ -81,15 +88,19 @@ SimulationResult simulate(const Session& session, const SimulationConfig& config
   Clock::time_point shown = begin;
   const double limit = config.duration > 0 ? config.duration : config.limit;
   const auto is_over = [&] { return executive.failures().size() > 0 || (config.duration <= 0 && watch->done()); };
-  while (executive.time() < limit && !is_over()) {
-    executive.runUntil(is_over, std::min(kStride, limit - executive.time()));
-    if (progress && Clock::now() - shown > std::chrono::milliseconds(100)) {
-      shown = Clock::now();
-      progress(executive.time());
+  try {
+    while (executive.time() < limit && !is_over()) {
+      executive.runUntil(is_over, std::min(kStride, limit - executive.time()));
+      if (progress && Clock::now() - shown > std::chrono::milliseconds(100)) {
+        shown = Clock::now();
+        progress(executive.time());
+      }
     }
+  } catch (const std::exception& error) {
+    result.failures.emplace_back(error.what());
   }
   result.done = config.duration > 0 || watch->done();
-  if (result.done && config.duration <= 0) executive.runFor(config.settling);
+  if (result.done && config.duration <= 0 && result.failures.empty()) executive.runFor(config.settling);
   result.simulated = executive.time();
   result.outcome = watch->status().outcome;
   if (watch->inCell()) {
@@ -97,7 +108,7 @@ SimulationResult simulate(const Session& session, const SimulationConfig& config
     text << "the session ends while the needle is in the cell, " << 1e6 * watch->status().depth << " um deep";
     result.warnings.push_back(text.str());
   }
-  if (!result.done && executive.failures().empty()) {
+  if (!result.done && executive.failures().empty() && result.failures.empty()) {
     std::ostringstream text;
     text << "neither the hand nor the injection was done within " << limit << " s";
     result.warnings.push_back(text.str());

@@ -47,7 +47,7 @@ bool DeviceSettings::received(const std::string& driver, const ros::Time& now) {
     return false;
   }
   if (since_.isZero()) since_ = now;
-  if (secondsBetween(since_, now) < kSettle && !published_.empty()) return false;
+  if (!isDue(since_, now, kSettle) && !published_.empty()) return false;
   for (const Published& entry : published_) {
     if (!logged_)
       ROS_INFO_STREAM("sent to " << driver << ": " << entry.publisher.topic() << " = " << entry.setting.value);

@@ -78,14 +78,14 @@ void HapticDeviceNode::step(const Cycle::Tick& tick) {
 /// Not in every step: the message triggers the bridge, whose force triggers this node, and both
 /// would run at full speed.
 void HapticDeviceNode::publishNoMessage(const ros::Time& now) {
-  if (!last_ && secondsBetween(silence_published_, now) < kSilencePeriod) return;
+  if (!last_ && !isDue(silence_published_, now, kSilencePeriod)) return;
   silence_published_ = now;
   position_.publishInvalid(toPose(Eigen::Vector3d::Zero(), now, kHapticFrame));
 }
 
 void HapticDeviceNode::publishButtons(const ros::Time& now, bool clutch, bool operator_present) {
   const bool changed = !last_ || last_->clutch != clutch || last_->operator_present != operator_present;
-  if (!changed && secondsBetween(buttons_published_, now) < kButtonPeriod) return;
+  if (!changed && !isDue(buttons_published_, now, kButtonPeriod)) return;
   buttons_published_ = now;
   clutch_.publish(button(now, clutch));
   operator_present_.publish(button(now, operator_present));

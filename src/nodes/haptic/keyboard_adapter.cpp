@@ -67,7 +67,7 @@ std::optional<HandReading> KeyboardAdapter::read(const Cycle::Tick& tick) {
 }
 
 void KeyboardAdapter::render(const Eigen::Vector3d& force, const Cycle::Tick& tick) {
-  if (secondsBetween(shown_, tick.now) < kTextPeriod) return;
+  if (!isDue(shown_, tick.now, kTextPeriod)) return;
   shown_ = tick.now;
   char felt[64];
   std::snprintf(felt, sizeof felt, "[%s] at the hand %.2f N, ", hand_.present() ? "moving" : "at rest", force.norm());

@@ -135,7 +135,7 @@ std::optional<HandReading> MarkerAdapter::read(const Cycle::Tick& tick) {
 }
 
 void MarkerAdapter::render(const Eigen::Vector3d& force, const Cycle::Tick& tick) {
-  if (secondsBetween(shown_, tick.now) < kShowPeriod) return;
+  if (!isDue(shown_, tick.now, kShowPeriod)) return;
   shown_ = tick.now;
   followNeedle();
   displayForce(force);

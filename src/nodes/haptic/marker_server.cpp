@@ -39,7 +39,7 @@ MarkerServer::~MarkerServer() {
 void MarkerServer::receive(const Feedback& feedback) {
   if (feedback.marker_name != marker_.name) return;
   const ros::Time now = bus_.now();
-  if (feedback.client_id != client_ && secondsBetween(client_heard_, now) < kClientTimeout) return;
+  if (feedback.client_id != client_ && !isDue(client_heard_, now, kClientTimeout)) return;
   client_ = feedback.client_id;
   client_heard_ = now;
   if (feedback.event_type == Feedback::POSE_UPDATE) setPose(feedback.pose);

@@ -35,7 +35,7 @@ void InjectorLink::setPulse(const std::optional<PulseGoal>& pulse, const ros::Ti
     pulse_.publish(message_);
     begun_ = false;
   }
-  if (pulse && pending_ != 0 && secondsBetween(message_.header.stamp, now) >= kRepetition) {
+  if (pulse && pending_ != 0 && isDue(message_.header.stamp, now, kRepetition)) {
     message_.header.stamp = now;
     pulse_.publish(message_);
   }

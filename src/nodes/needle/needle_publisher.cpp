@@ -36,7 +36,7 @@ NeedlePublisher::NeedlePublisher(Cycle& cycle, const ManipulatorGeometry& geomet
 void NeedlePublisher::publish(const ros::Time& now) {
   publishMotion(now);
   publishAbilities(now);
-  if (secondsBetween(joint_states_sent_, now) >= joint_states_period_) publishJointStates(now);
+  if (isDue(joint_states_sent_, now, joint_states_period_)) publishJointStates(now);
 }
 
 void NeedlePublisher::publishMotion(const ros::Time& now) {
@@ -74,8 +74,7 @@ void NeedlePublisher::publishAbilities(const ros::Time& now) {
   message.latency = abilities.latency;
   message.stop_time = abilities.stop_time;
   // Repeated for subscribers that received another node's abilities meanwhile.
-  if (message == last_published_abilities_ &&
-      secondsBetween(last_published_abilities_.header.stamp, now) < kAbilitiesPeriod)
+  if (message == last_published_abilities_ && !isDue(last_published_abilities_.header.stamp, now, kAbilitiesPeriod))
     return;
   message.header.stamp = now;
   abilities_.publish(message);

@@ -39,8 +39,11 @@ std::optional<Arguments> parse(int argc, char** argv) {
   namespace po = boost::program_options;
   Arguments arguments;
   std::vector<std::string> words, own;
-  for (int i = 1; i < argc; ++i)
-    (std::string(argv[i]).find(":=") == std::string::npos ? own : arguments.overrides).emplace_back(argv[i]);
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const bool is_key = word[0] != '-' && word.find('=') != std::string::npos;
+    (is_key ? arguments.overrides : own).push_back(word);
+  }
   po::options_description options("Options");
   auto add = options.add_options();
   add("help,h", "this text");

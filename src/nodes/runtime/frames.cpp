@@ -53,7 +53,7 @@ Eigen::Isometry3d waitForFrame(Bus& bus, const std::string& parent, const std::s
     return *listener.find(parent, frame);
   std::ostringstream message;
   message << "tf has had no transform from frame '" << frame << "' to '" << parent << "' for " << timeout
-          << " s: a static_transform_publisher, as in the node's launch file, or robot_state_publisher must publish it";
+          << " s: rig_frames, robot_state_publisher or a static_transform_publisher must publish it";
   throw ConfigError(message.str());
 }
 

@@ -17,8 +17,7 @@ class LoopStatePublisher {
 
   /// `reason`: why the node holds; empty: it follows.
   void step(const std::string& reason, const ros::Time& now) {
-    const double age = last_.header.stamp.isZero() ? 1 : secondsBetween(last_.header.stamp, now);
-    if (age >= 0 && age < (reason == last_.hold_reason ? 1 : 0.1)) return;
+    if (!isDue(last_.header.stamp, now, reason == last_.hold_reason ? 1 : 0.1)) return;
     last_.header.stamp = now;
     last_.follows = reason.empty();
     last_.hold_reason = reason;

@@ -27,8 +27,7 @@ int runNode(int argc, char** argv, const std::string& name, Priority priority = 
     if (std::string(argv[i]) == "--help" || std::string(argv[i]) == "-h") {
       const std::string parameters = parameterText(name);
       std::printf("%s", Node::kHelp);
-      if (!parameters.empty())
-        std::printf("\nParameters (private), as the launch files set them:\n\n%s", parameters.c_str());
+      if (!parameters.empty()) std::printf("\nParameters (private), as a session sets them:\n\n%s", parameters.c_str());
       return 0;
     }
   }

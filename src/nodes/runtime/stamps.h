@@ -20,6 +20,13 @@ double secondsBetween(const Time& from, const Time& to) {
   return 1e-9 * static_cast<double>(static_cast<std::int64_t>(to.toNSec()) - static_cast<std::int64_t>(from.toNSec()));
 }
 
+/// Whether `period` (s) has passed since `last`, or the clock was set back meanwhile: what is repeated goes on then,
+/// and does not wait until the clock has caught up.
+template <typename Time>
+bool isDue(const Time& last, const Time& now, double period) {
+  return now < last || secondsBetween(last, now) >= period;
+}
+
 /// A duration of whole nanoseconds.
 inline ros::Duration durationOf(double seconds) {
   ros::Duration duration;

@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -176,6 +177,11 @@ TYPED_TEST_P(BusContract, ServiceAnswersUntilItEnds) {
   std_srvs::Trigger call;
   ASSERT_TRUE(this->pair_.second().call(first.name() + "/ask", call));
   EXPECT_EQ(call.response.message, "yes");
+  const BusHandle failing = first.template advertiseService<std_srvs::Trigger>(
+      "~fail",
+      [](std_srvs::Trigger::Request&, std_srvs::Trigger::Response&) -> bool { throw std::runtime_error("no answer"); },
+      Serving::kOwnThread);
+  EXPECT_FALSE(this->pair_.second().call(first.name() + "/fail", call)) << "the caller goes on";
   service.reset();
   EXPECT_FALSE(this->pair_.second().call(first.name() + "/ask", call));
 }

@@ -41,11 +41,10 @@ class ExecutiveTest : public testing::Test {
   }
   void addThrower(const std::string& name, int steps) {
     executive_.add(name, [steps](Bus& bus) {
-      auto left = std::make_shared<int>(steps);
-      bus.setStep(0.001, [left](const ros::Time&) {
-        if (--*left < 0) throw std::runtime_error("the cell is gone");
+      bus.setStep(0.001, [left = steps](const ros::Time&) mutable {
+        if (--left < 0) throw std::runtime_error("the cell is gone");
       });
-      return std::shared_ptr<void>(left);
+      return std::make_shared<int>();
     });
   }
   long count(const std::string& entry) const { return std::count(log_.begin(), log_.end(), entry); }
@@ -129,6 +128,14 @@ TEST_F(ExecutiveTest, NodeThatThrowsInAStepEndsAndTheOthersGoOn) {
   EXPECT_FALSE(executive_.runs("thrower"));
   EXPECT_EQ(executive_.failures().at("thrower"), "the cell is gone");
   EXPECT_EQ(count("/other"), 10);
+}
+
+TEST_F(ExecutiveTest, ANodeThatSomebodyElseHoldsCannotEndBeforeHim) {
+  std::shared_ptr<void> held;
+  executive_.add("held", [&](Bus&) { return held = std::make_shared<int>(); });
+  EXPECT_THROW(executive_.end("held"), std::logic_error);
+  held.reset();
+  executive_.end("held");
 }
 
 TEST_F(ExecutiveTest, NodeThatThrowsInItsConstructorIsNamed) {

@@ -25,7 +25,7 @@ TEST_F(SimulateProgram, RunsASessionForADurationAndLeavesItsFiles) {
 }
 
 TEST_F(SimulateProgram, TellsTheOutcomeOfAnInjection) {
-  const Outcome result = run("hand.device:=none --quiet");
+  const Outcome result = run("hand.device=none --quiet");  // as session takes it
   EXPECT_EQ(result.status, 0) << result.err;
   expectText(result.out, " times real time; injection: injected\n");
 }

@@ -170,5 +170,16 @@ TEST_F(SimulationTest, ASensorOfAnotherNodeIsRefusedToo) {
   EXPECT_NE(error.find("camera/source = topic"), std::string::npos) << error;
 }
 
+TEST_F(SimulationTest, WhatNobodyWouldStartIsRefused) {
+  for (const std::string& key : {"auto_enable", "start_when_enabled"}) {
+    const std::string error = errorOf([&] {
+      requireSimulable(load({"hand.device:=none", "injection." + key + ":=false"}));
+    });
+    EXPECT_NE(error.find("injection/" + key + " = false"), std::string::npos) << error;
+  }
+  EXPECT_NE(errorOf([&] { requireSimulable(load({"injection.auto_enable:=false"})); }), "");
+  EXPECT_EQ(errorOf([&] { requireSimulable(load({"injection.start_when_enabled:=false"})); }), "") << "the hand leads";
+}
+
 }  // namespace
 }  // namespace microinjection
