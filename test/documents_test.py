@@ -35,6 +35,14 @@ class TheDocuments(unittest.TestCase):
         self.assert_none([f'{path}: no link leads there' for path in self.project.documents
                           if path.startswith('doc/') and path not in found])
 
+    def test_show_code_that_is_compiled(self):
+        tests = [path.read_text() for path in (ROOT / 'test').rglob('*_test.cpp')]
+        shown = [(path, block) for path in self.project.documents
+                 for block in re.findall('```cpp\n(.*?)```', self.project.text(path), re.DOTALL)]
+        self.assertTrue(shown)
+        self.assert_none([f'{path}: no test has the code {block.splitlines()[0]}' for path, block in shown
+                          if not any(block in text for text in tests)])
+
     def test_have_every_parameter_and_its_default(self):
         self.assert_table(check_parameters, 'doc/reference/parameters.md')
 
