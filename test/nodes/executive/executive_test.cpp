@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <std_msgs/Header.h>
+#include <std_srvs/Trigger.h>
 
 #include <string>
 #include <vector>
@@ -92,6 +93,21 @@ TEST_F(ExecutiveTest, DrivenNodeStepsByItselfWhenItsInputIsLate) {
   executive_.runFor(0.01);
   EXPECT_EQ(count("/pose"), 11);
   EXPECT_EQ(count("/force"), 11 + 10);
+}
+
+TEST_F(ExecutiveTest, FrozenNodeAnswersNoService) {
+  using std_srvs::Trigger;
+  executive_.add("server", [](Bus& bus) {
+    return std::make_shared<BusHandle>(
+        bus.advertiseService<Trigger>("answer", [](Trigger::Request&, Trigger::Response&) { return true; }));
+  });
+  executive_.add("client", [](Bus&) { return std::make_shared<int>(0); });
+  Trigger call;
+  EXPECT_TRUE(executive_.bus("client").call("answer", call));
+  executive_.freeze("server");
+  EXPECT_FALSE(executive_.bus("client").call("answer", call));
+  executive_.thaw("server");
+  EXPECT_TRUE(executive_.bus("client").call("answer", call));
 }
 
 TEST_F(ExecutiveTest, CircleOfDrivingNodesIsRefused) {

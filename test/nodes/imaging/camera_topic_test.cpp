@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "cell_microinjection/MeasureCell.h"
 #include "placed_specimen.h"
 
 namespace microinjection {
@@ -86,6 +87,38 @@ TEST_F(CameraTopicTest, AShortImageIsNotRead) {
   send(whole);
   ASSERT_EQ(states().count(), 2u);
   EXPECT_EQ(states().newest()->header.stamp, whole.header.stamp);
+}
+
+TEST_F(CameraTopicTest, AnOldImageIsNotRead) {
+  constexpr double kTimeout = 0.5;  // s, as shipped
+  send(rendered());
+  ASSERT_EQ(states().count(), 1u);
+  const sensor_msgs::Image kept = rendered();
+  session_.run(1.2 * kTimeout);
+  send(kept);
+  EXPECT_EQ(states().count(), 1u);
+  send(rendered());
+  EXPECT_EQ(states().count(), 2u);
+}
+
+/// As a driver does whose camera has stopped.
+TEST_F(CameraTopicTest, AnImageThatComesAgainWithANewStampIsNotRead) {
+  sensor_msgs::Image image = rendered();
+  send(image);
+  ASSERT_EQ(states().count(), 1u);
+  image.header.stamp = session_.now();
+  send(image);
+  EXPECT_EQ(states().count(), 1u);
+}
+
+TEST_F(CameraTopicTest, WithoutNewImagesNothingIsMeasured) {
+  for (int i = 0; i < 12; ++i) send(rendered());
+  const auto measured = session_.call<cell_microinjection::MeasureCell>("vision/measure_cell");
+  EXPECT_TRUE(measured.success) << measured.message;
+  session_.run(0.6);
+  const auto answer = session_.call<cell_microinjection::MeasureCell>("vision/measure_cell");
+  EXPECT_FALSE(answer.success);
+  EXPECT_NE(answer.message.find("there is no new image"), std::string::npos) << answer.message;
 }
 
 }  // namespace

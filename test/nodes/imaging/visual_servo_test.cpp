@@ -99,5 +99,28 @@ TEST_F(VisualServoTest, RefusesADisabledController) {
   EXPECT_LT((needle_.place() - start).norm(), 1e-9);
 }
 
+/// It is the place of the tip at that time.
+TEST_F(VisualServoTest, AnOldImageIsNotUsed) {
+  needle_.enable();
+  auto& states = session_.world().hear<cell_microinjection::VisionState>("/vision/state");
+  ASSERT_TRUE(tipIsFound(states.newest()));
+  cell_microinjection::VisionState last = *states.newest();
+  last.cell.verdict = last.cell.FOUND;  // below the tip: a new one would forbid the way
+  last.cell.x = last.injection_pipette.x;
+  last.cell.y = last.injection_pipette.y;
+  const Eigen::Vector3d start = needle_.place();
+  session_.executive().kill("vision");
+  session_.run(1);
+  const auto silent = go();
+  EXPECT_FALSE(silent.success);
+  EXPECT_NE(silent.message.find("the tip is not seen"), std::string::npos) << silent.message;
+  session_.world().say("/vision/state", last);  // as a relay does
+  session_.run(0.1);
+  const auto repeated = go();
+  EXPECT_FALSE(repeated.success);
+  EXPECT_NE(repeated.message.find("the image is old"), std::string::npos) << repeated.message;
+  EXPECT_LT((needle_.place() - start).norm(), 1e-9);
+}
+
 }  // namespace
 }  // namespace microinjection

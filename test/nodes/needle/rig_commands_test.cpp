@@ -146,6 +146,30 @@ TEST_F(RigCommands, ASecondPublisherIsAFaultUntilEnable) {
   EXPECT_TRUE(bench_.until([&] { return bench_.state() == "ENABLED"; }, 0.01));
 }
 
+/// Whatever it commands.
+TEST_F(RigCommands, ASecondPublisherOfAVelocityOrAMoveIsAFault) {
+  for (const std::string topic : {"needle/servo_cv", "needle/move_cp"}) {
+    SCOPED_TRACE(topic);
+    bench_.servo(poseAt(held_));
+    bench_.run(0.05);
+    TestNode& stranger = bench_.session.addTestNode("stranger_" + topic.substr(7));
+    if (topic == "needle/move_cp") {
+      stranger.repeat(topic, poseAt(goal_));
+    } else {
+      stranger.repeat(topic, velocityMessage(50e-6, "world"));
+    }
+    EXPECT_TRUE(bench_.until([&] { return bench_.state() == "FAULT"; }, 0.01));
+    stranger.silence(topic);
+    bench_.silence();
+    bench_.run(0.3);
+    EXPECT_TRUE(isNear(bench_.needle(), held_, 1e-6));
+    EXPECT_TRUE(contains(bench_.status(), "two nodes command the needle"));
+    bench_.command("enable");
+    ASSERT_TRUE(bench_.until([&] { return bench_.state() == "ENABLED"; }, 0.01));
+    bench_.run(0.2);
+  }
+}
+
 TEST_F(RigCommands, AMoveArrives) {
   bench_.move(goal_);
   EXPECT_TRUE(bench_.until([&] { return bench_.busy(); }, 0.005));

@@ -66,7 +66,10 @@ TEST_F(ForceTopic, TareTakesOffForceAndTorque) {
 }
 
 TEST_F(ForceTopic, WhatCannotBePlacedOrReadIsNotTrusted) {
+  Wrench twisted = wrench(1e-6, 0, 0);
+  twisted.wrench.torque.y = NAN;
   const std::pair<std::optional<Wrench>, std::string> untrusted[] = {
+      {twisted, "no valid wrench"},
       {wrenchMessage(1e-6, 0, 0, "nowhere"), "no transform from frame 'nowhere'"},
       {wrenchMessage(NAN, 0, 0, "transducer"), "no valid wrench"},
       {std::nullopt, "no valid wrench"}};
