@@ -28,7 +28,10 @@ void readRig(LayerSection section, SessionDraft& draft, const SessionChoices& ch
 void readHand(LayerSection section, Session::Hand& hand, const SessionChoices& choices) {
   const std::string before = hand.device;
   section.choice("device", hand.device, choices.hands);
-  if (hand.device != before) hand.config = hand.position_type = kAuto, hand.topics = {};  // those of another device
+  if (hand.device != before) {  // those of another device
+    hand.config = hand.position_type = kAuto;
+    hand.topics = {};
+  }
   section.existingFile("config", hand.config, kAutomatic);
   LayerSection topics = section.section("topics");
   topics.text("namespace", hand.topics.name_space);

@@ -78,7 +78,9 @@ class GoalNode {
       goal.setAccepted();
       return goal.setAborted(result, refusal);
     }
-    if (active_ && goal.getGoalID().stamp < current_.getGoalID().stamp)
+    // A last goal from the future tells nothing: the clock was set back.
+    const bool comparable = current_.isValid() && current_.getGoalID().stamp <= bus_.now();
+    if (comparable && goal.getGoalID().stamp < current_.getGoalID().stamp)
       return goal.setCanceled(Result(), "a newer goal has come before");
     if (active_) preempt();
     current_ = goal;

@@ -38,7 +38,7 @@ struct Arguments {
 std::optional<Arguments> parse(int argc, char** argv) {
   namespace po = boost::program_options;
   Arguments arguments;
-  std::vector<std::string> words, own;
+  std::vector<std::string> own;
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     const bool is_key = word[0] != '-' && word.find('=') != std::string::npos;
