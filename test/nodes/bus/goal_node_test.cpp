@@ -148,5 +148,23 @@ TEST_F(GoalNodeTest, StatusFiveTimesASecondAndFor5s) {
   EXPECT_EQ(goals_, 1u);  // the last one stays, as with SimpleActionServer
 }
 
+TEST_F(GoalNodeTest, AGoalOlderThanTheLastOneIsCancelledAlsoWhenThatHasEnded) {
+  send("first", 1);
+  run(0.5);
+  send("older", 1, -0.7);
+  run(0.5);
+  EXPECT_EQ(ended_, (Ends{{"first", GoalStatus::SUCCEEDED}, {"older", GoalStatus::RECALLED}}));
+  EXPECT_EQ(node_.ended, 1);
+}
+
+TEST_F(GoalNodeTest, AClockThatWasSetBackRefusesNoGoal) {
+  send("before", 1);
+  run(0.5);
+  network_.setTime(network_.now() - ros::Duration(5));
+  send("after", 1);
+  run(6);
+  EXPECT_EQ(ended_, (Ends{{"before", GoalStatus::SUCCEEDED}, {"after", GoalStatus::SUCCEEDED}}));
+}
+
 }  // namespace
 }  // namespace microinjection
