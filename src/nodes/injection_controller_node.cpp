@@ -29,7 +29,7 @@ bool moves(const std::string& command) { return command == "home" || command == 
 const char* const InjectionControllerNode::kHelp =
     "injection_controller: controls the needle and holds it when an input is invalid.\n"
     "In: /teleop/servo_cp /needle/measured_cp, /cell/predicted_cf or /force_sensor/measured_cf, /injector/state,\n"
-    "/needle/abilities, /cell/estimate, /controller/state_command (enable, disable, pause, resume, home, unhome, "
+    "/needle/abilities, /needle/operating_state, /needle/loop_state, /cell/estimate, /controller/state_command (enable, disable, pause, resume, home, unhome, "
     "approach, indent,\n"
     "inject, withdraw). Action: /controller/inject. Out: /needle/servo_cp /controller/operating_state\n"
     "/controller/injection_state /injector/pulse /injector/stop.\n";
@@ -57,6 +57,7 @@ InjectionControllerNode::InjectionControllerNode(Bus& bus)
                                                         parameters_.input_timeout)),
       setpoint_(cycle_.output<geometry_msgs::PoseStamped>("needle/servo_cp")),
       injection_(cycle_.output<cell_microinjection::InjectionStatus>("controller/injection_state", true)),
+      rig_(bus),
       loop_state_(bus, "controller/loop_state"),
       action_(bus, model_, parameters_.model.goal),
       repeated_(bus, kControllerCommandTopic),
@@ -157,6 +158,7 @@ void InjectionControllerNode::step(const Cycle::Tick& tick) {
   InjectionController::Input input;
   input.target = validPosition(target, kWorldFrame);
   if (injector_) input.injector = injector_->report(tick.now);
+  input.rig_hold = rig_.takeHold();
   input.expected = expectedPuncture(tick.now);
   if (needle) {
     input.needle = needle->translation();

@@ -16,6 +16,7 @@
 #include "cell_microinjection/StringStamped.h"
 #include "nodes/injection/injection_action.h"
 #include "nodes/injection/injector_link.h"
+#include "nodes/injection/rig_watch.h"
 #include "nodes/runtime/command_log.h"
 #include "nodes/runtime/command_source.h"
 #include "nodes/runtime/cycle.h"
@@ -29,7 +30,8 @@ namespace microinjection {
 /// In:  /teleop/servo_cp (PoseStamped, `world`; with mode manual), /needle/measured_cp
 ///      (PoseStamped), /cell/predicted_cf or /force_sensor/measured_cf (WrenchStamped),
 ///      /controller/state_command (StringStamped), /needle/abilities (ManipulatorAbilities, to
-///      drive a slow rig slowly), /injector/state, /cell/estimate (CellEstimate, the expected puncture);
+///      drive a slow rig slowly), /needle/operating_state and /needle/loop_state (does the rig
+///      follow?), /injector/state, /cell/estimate (CellEstimate, the expected puncture);
 ///      the action Inject on /controller/inject
 /// Out: /needle/servo_cp (PoseStamped, `world`), /controller/operating_state (OperatingState,
 ///      latched, on change and after each state_command), /controller/injection_state
@@ -75,6 +77,7 @@ class InjectionControllerNode {
   Output<geometry_msgs::PoseStamped>& setpoint_;
   Output<cell_microinjection::InjectionStatus>& injection_;
   std::unique_ptr<InjectorLink> injector_;  ///< null without an injector
+  RigWatch rig_;
   LoopStatePublisher loop_state_;
   InjectionAction action_;
   RepeatedCommands repeated_;

@@ -20,7 +20,7 @@ const char* const MicromanipulatorNode::kHelp =
     "micromanipulator: a three-axis micromanipulator, simulated, emulated or real, with CRTK topics below /needle.\n"
     "In: /needle/servo_cp /needle/servo_cv /needle/move_cp /needle/state_command (enable, disable, pause, resume,\n"
     "home, unhome, stop). Out: /needle/measured_cp /needle/measured_cv /needle/setpoint_cp /needle/abilities\n"
-    "/needle/operating_state joint_states.\n";
+    "/needle/operating_state /needle/loop_state joint_states.\n";
 
 MicromanipulatorNode::Parameters MicromanipulatorNode::Parameters::read(ConfigReader& reader) {
   Parameters parameters;
@@ -44,7 +44,8 @@ MicromanipulatorNode::MicromanipulatorNode(Bus& bus, ConfigReader reader)
              parameters_.model, *rig_.device),
       cycle_(bus, parameters_.rate),
       commands_(cycle_, parameters_.model, rig_, model_, parameters_.allow_network),
-      publisher_(cycle_, geometry_, rig_, model_, parameters_.joint_states_rate) {
+      publisher_(cycle_, geometry_, rig_, model_, parameters_.joint_states_rate),
+      loop_state_(bus, "needle/loop_state") {
   if (cycle_.bus().isVirtual() && !rig_.inject) {
     throw ConfigError("rig = " + parameters_.rig +
                       ": a real rig cannot run in virtual time, it moves on while time stands");
@@ -60,6 +61,7 @@ void MicromanipulatorNode::step(const Cycle::Tick& tick) {
   commands_.endStep();
   publisher_.publish(tick.now);
   publishState(tick);
+  loop_state_.step(commands_.streamHold(), tick.now);
   cycle_.bus().setBusy(commands_.moves());
 }
 

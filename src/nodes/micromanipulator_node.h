@@ -6,6 +6,7 @@
 #include "nodes/needle/needle_publisher.h"
 #include "nodes/needle/rig_device.h"
 #include "nodes/runtime/cycle.h"
+#include "nodes/runtime/loop_state.h"
 
 namespace microinjection {
 
@@ -30,6 +31,7 @@ namespace microinjection {
 ///      /needle/operating_state (OperatingState; on change and after each state_command): DISABLED
 ///      without connection, FAULT until enable or disable; is_busy only for moves, once true and
 ///      once false for each
+///      /needle/loop_state (LoopState): whether a stream of commands moves the needle
 ///      /needle/setpoint_trace (TimeReference)
 ///      joint_states (JointState), for robot_state_publisher
 ///
@@ -62,6 +64,7 @@ class MicromanipulatorNode {
   Cycle cycle_;
   NeedleCommands commands_;
   NeedlePublisher publisher_;
+  LoopStatePublisher loop_state_;
 };
 
 }  // namespace microinjection

@@ -215,6 +215,11 @@ std::string NeedleCommands::unavailableReason() const {
   return master_lost_ ? "the ROS master is lost" : state_.unavailableReason();
 }
 
+std::string NeedleCommands::streamHold() const {
+  std::string reason = unavailableReason();
+  return reason.empty() ? model_.streamHold() : reason;
+}
+
 void NeedleCommands::step(const Cycle::Tick& tick) {
   if (tick.now < now_) set_back_ += secondsBetween(tick.now, now_);
   now_ = tick.now;

@@ -48,6 +48,7 @@ class NeedleCommands {
   /// state.
   bool takeStateCommandReceived();
   std::string unavailableReason() const;  ///< why motion commands are refused here; else empty
+  std::string streamHold() const;         ///< why a stream of commands moves nothing now; else empty
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
  private:

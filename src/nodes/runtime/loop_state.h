@@ -8,8 +8,8 @@
 
 namespace microinjection {
 
-/// Publishes on a latched topic whether a node follows its inputs: at each change, at most each
-/// 0.1 s, and each second.
+/// Publishes on a latched topic whether a node follows its inputs: at each change, another reason
+/// at most each 0.1 s, and each second.
 class LoopStatePublisher {
  public:
   LoopStatePublisher(Bus& bus, const std::string& topic)
@@ -17,7 +17,8 @@ class LoopStatePublisher {
 
   /// `reason`: why the node holds; empty: it follows.
   void step(const std::string& reason, const ros::Time& now) {
-    if (!isDue(last_.header.stamp, now, reason == last_.hold_reason ? 1 : 0.1)) return;
+    const bool changed = last_.header.stamp.isZero() || last_.follows != static_cast<unsigned char>(reason.empty());
+    if (!changed && !isDue(last_.header.stamp, now, reason == last_.hold_reason ? 1 : 0.1)) return;
     last_.header.stamp = now;
     last_.follows = reason.empty();
     last_.hold_reason = reason;

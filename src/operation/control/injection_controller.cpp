@@ -98,6 +98,11 @@ std::optional<Eigen::Vector3d> InjectionController::step(const Input& input, dou
     invalidateNeedle(dt);
     return setpoint_;  // empty before the first pose
   }
+  if (!input.rig_hold.empty()) {
+    yieldToRig(input);
+    return setpoint_;
+  }
+  yielded_.reset();
   if (!setpoint_) engage(*input.needle, input.axis);
   if (rigIsAtFault(*input.needle, dt)) return std::nullopt;
   observe(input, isValid(input.force), dt);
@@ -125,6 +130,21 @@ void InjectionController::invalidateNeedle(double dt) {
   if (injection_ == InjectionState::kIndent) stop(InjectionOutcome::kGuard, hold_reason_ + " while it indents");
   const std::string late = run_.wait(injection_, dt);
   if (!late.empty()) stop(InjectionOutcome::kGuard, late);
+}
+
+/// While the rig does not follow, the set-point is where the needle is: nothing leaps when it does again.
+void InjectionController::yieldToRig(const Input& input) {
+  if (!yielded_) yielded_ = input.needle;
+  if (setpoint_) setpoint_ = input.needle;
+  target_offset_.reset();
+  needle_speed_.reset();
+  monitor_.skip();
+  endPulse(input.rig_hold);
+  const bool moved = (*input.needle - *yielded_).norm() > following_error_limit_;
+  if (run_.active() && moved) stop(InjectionOutcome::kGuard, input.rig_hold + ", and the needle was moved meanwhile");
+  if (state_ == OperatingState::kPaused) return;
+  hold_reason_ = input.rig_hold;
+  if (busy()) hold(input.rig_hold);
 }
 
 bool InjectionController::rigIsAtFault(const Eigen::Vector3d& needle, double dt) {

@@ -50,6 +50,8 @@ struct InjectionControllerConfig {
 ///                                                       meanwhile, up to the time guard
 ///     needle does not     the set-point waits for it;   the set-point waits for it
 ///     follow              the hand's motion is ignored
+///     rig does not        held meanwhile, a pulse       PAUSED, a pulse stops; stops if the needle
+///     follow              ends                          is moved meanwhile
 ///     stale injector      its pulse counts as over      stops after pulse + injector_timeout
 ///     tracking, speed     FAULT: no set-point, until disable or enable
 ///     speed of set-point  never above the limit
@@ -61,6 +63,7 @@ class InjectionController {
     std::optional<Eigen::Vector3d> needle;  ///< m, tip in `world`
     std::optional<Eigen::Vector3d> force;   ///< N, of the cell on the tip, `world`
     std::optional<InjectorReport> injector;
+    std::string rig_hold;                             ///< why the rig does not follow set-points; empty: it does
     std::optional<ExpectedPuncture> expected;         ///< of the outermost membrane
     Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< of the pipette, out of the cell, `world`
   };
@@ -136,6 +139,7 @@ class InjectionController {
   bool isInside(const Eigen::Vector3d& needle, const Eigen::Vector3d& axis) const;
   void engage(const Eigen::Vector3d& needle, const Eigen::Vector3d& axis);
   void invalidateNeedle(double dt);
+  void yieldToRig(const Input& input);
   bool rigIsAtFault(const Eigen::Vector3d& needle, double dt);
   void monitorManualPulse(const Input& input, double dt);
   void observe(const Input& input, bool force_valid, double dt);
@@ -166,6 +170,7 @@ class InjectionController {
   int punctures_ = 0;
   NeedleSpeed needle_speed_;
   std::optional<Eigen::Vector3d> setpoint_;                     ///< m; starts at the needle when it is enabled
+  std::optional<Eigen::Vector3d> yielded_;                      ///< m, the needle when the rig began not to follow
   std::optional<Eigen::Vector3d> target_offset_;                ///< m, added to targets; set at the first one
   Eigen::Vector3d home_ = Eigen::Vector3d::Zero();              ///< m, the needle when it was enabled out of the cell
   double rig_speed_ = std::numeric_limits<double>::infinity();  ///< m/s

@@ -78,15 +78,19 @@ void Micromanipulator::begin(Mode mode, const AxesMotion& from) {
   abort_reason_.clear();
 }
 
-/// Registers one command of a stream. Returns the reason why streams may not move the needle, else
-/// an empty text.
-std::string Micromanipulator::streamRefusal() {
-  const bool begins = std::exchange(stream_pause_, 0) > config_.command_timeout;
+std::string Micromanipulator::streamHold() const {
   if (std::string reason = unavailableReason(); !reason.empty()) return reason;
-  if (begins) streams_blocked_ = false;
-  if (!streams_blocked_) return "";
+  if (!streams_blocked_ || stream_pause_ > config_.command_timeout) return "";
   return "the needle was stopped; a stream moves it again after a pause of " + std::to_string(config_.command_timeout) +
          " s or after enable";
+}
+
+/// Registers one command of a stream. Returns streamHold().
+std::string Micromanipulator::streamRefusal() {
+  std::string hold = streamHold();
+  stream_pause_ = 0;
+  if (hold.empty()) streams_blocked_ = false;
+  return hold;
 }
 
 std::string Micromanipulator::servoPosition(const Eigen::Isometry3d& tip_pose) {

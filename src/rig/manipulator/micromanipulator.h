@@ -66,6 +66,8 @@ class Micromanipulator {
   /// replaced it.
   bool busy() const { return move_active_; }
   bool moving() const { return mode_ == Mode::kMove || mode_ == Mode::kVelocity; }  ///< executes servo_cv or move_cp
+  /// Why a command of a stream would move nothing now; empty: it would move the needle.
+  std::string streamHold() const;
   ManipulatorDevice::State state() const { return device_->state(); }
   std::string reason() const { return device_->reason(); }  ///< why the device is not ready; empty if it is
   const std::string& abortReason() const {

@@ -56,6 +56,77 @@ TEST_F(InjectionSafetyTest, TheSetPointWaitsForANeedleThatStandsStill) {
   }
 }
 
+/// Whoever holds the rig: the set-point is the needle's place meanwhile, and a person lets the injection go on.
+TEST_F(InjectionSafetyTest, ARigThatDoesNotFollowPausesTheInjection) {
+  for (const InjectionState state : {InjectionState::kApproach, InjectionState::kIndent, InjectionState::kInject,
+                                     InjectionState::kWithdraw}) {
+    SCOPED_TRACE(toText(state));
+    rig_ = SpringRig();
+    enable();
+    controller_.adaptTo(1, 0.3);
+    ASSERT_TRUE(reach(state));
+    steps(20);
+    rig_.input.rig_hold = "DISABLED";
+    const Eigen::Vector3d held = rig_.tip;
+    for (int i = 0; i < 3000; ++i) {
+      rig_.step(controller_);
+      EXPECT_EQ(*rig_.setpoint, held);
+      EXPECT_FALSE(controller_.pulse());
+    }
+    EXPECT_EQ(controller_.state(), OperatingState::kPaused);
+    EXPECT_NE(controller_.holdReason().find("DISABLED"), std::string::npos) << controller_.holdReason();
+    rig_.input.rig_hold.clear();
+    steps(500);
+    EXPECT_EQ(rig_.tip, held) << "nothing moves before resume";
+    if (state == InjectionState::kInject) continue;  // the pulse is lost: the injection has ended
+    EXPECT_EQ(controller_.command("resume"), "");
+    rig_.step(controller_);
+    EXPECT_LT((rig_.tip - held).norm(), 0.3e-6) << "nothing leaps";
+    rig_.run(controller_);
+    EXPECT_EQ(controller_.result().outcome, InjectionOutcome::kInjected);
+  }
+}
+
+TEST_F(InjectionSafetyTest, ANeedleThatIsMovedWhileTheRigIsDisabledEndsTheInjection) {
+  enable();
+  controller_.adaptTo(1, rig_.lag);
+  ASSERT_TRUE(reach(InjectionState::kIndent));
+  rig_.input.rig_hold = "DISABLED";
+  steps(10);
+  rig_.tip.z() += 10e-6;
+  steps(10);
+  EXPECT_FALSE(controller_.running());
+  EXPECT_EQ(controller_.result().outcome, InjectionOutcome::kGuard);
+  EXPECT_NE(controller_.result().reason.find("moved meanwhile"), std::string::npos) << controller_.result().reason;
+}
+
+TEST_F(InjectionSafetyTest, NothingBeginsBeforeTheRigFollows) {
+  rig_.input.rig_hold = "DISABLED";
+  enable();
+  steps(2000);
+  EXPECT_FALSE(controller_.running());
+  EXPECT_FALSE(rig_.setpoint);
+  rig_.input.rig_hold.clear();
+  steps(2);
+  EXPECT_TRUE(controller_.running());
+}
+
+TEST_F(InjectionSafetyTest, WhatTheHandDoesWhileTheRigIsDisabledIsForgotten) {
+  takeInHand();
+  press(5e-6);
+  rig_.input.rig_hold = "DISABLED";
+  const Eigen::Vector3d held = rig_.tip;
+  press(8e-6);
+  EXPECT_EQ(controller_.holdReason(), "DISABLED");
+  EXPECT_EQ(controller_.state(), OperatingState::kEnabled) << "the hand leads on";
+  rig_.input.rig_hold.clear();
+  steps(500);
+  EXPECT_LT((rig_.tip - held).norm(), 0.01e-6);
+  press(2e-6);
+  steps(100);
+  EXPECT_NEAR((held - rig_.tip).z(), 2e-6, 0.1e-6);
+}
+
 TEST_F(InjectionSafetyTest, AGuardStopsALateNeedleAndNotItsSetPoint) {
   for (const double lag : {0.002, 0.1, 0.35}) {
     for (const bool by_hand : {false, true}) {

@@ -10,7 +10,7 @@
 
 namespace microinjection {
 
-/// A needle that follows its set-point with a lag, in front of an elastic cell whose membrane fails at a force and then
+/// A needle that follows its set-point with a lag while input.rig_hold is empty, in front of an elastic cell whose membrane fails at a force and then
 /// drags on the needle; an injector that works when it is asked to. Steps of 1 ms.
 struct SpringRig {
   static constexpr double kStep = 1e-3;  ///< s
@@ -68,7 +68,7 @@ struct SpringRig {
   }
 
   void move() {
-    if (setpoint) tip += (1 - std::exp(-kStep / lag)) * (*setpoint - tip);
+    if (setpoint && input.rig_hold.empty()) tip += (1 - std::exp(-kStep / lag)) * (*setpoint - tip);
   }
 
   void step(InjectionController& controller) {
