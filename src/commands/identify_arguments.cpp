@@ -10,6 +10,7 @@
 
 #include "base/config_errors.h"
 #include "base/errors.h"
+#include "base/output_files.h"
 #include "base/worker_processes.h"
 
 namespace microinjection {
@@ -61,15 +62,6 @@ void requirePositive(const std::string& option, double value) {
   std::ostringstream message;
   message << "--" << option << " = " << value << ": must be a number > 0";
   throw ConfigError(message.str());
-}
-
-/// An output must not replace what was measured or written by hand.
-void requireNoInput(const std::string& option, const std::string& path, const IdentifyArguments& arguments) {
-  std::error_code none;
-  for (const std::string& input : {arguments.record, arguments.scene}) {
-    if (path.empty() || input.empty() || !std::filesystem::equivalent(path, input, none)) continue;
-    throw ConfigError("--" + option + " = " + path + ": must be another file than the input");
-  }
 }
 
 /// The families that are installed with this program, or else those of the working directory.
@@ -170,9 +162,14 @@ std::optional<IdentifyArguments> parseIdentifyArguments(int argc, char** argv) {
     throw ConfigError("--prony = " + std::to_string(arguments.identification.prony_terms) + ": must be 0 to 3");
   }
   if (!arguments.out.empty() && arguments.scene.empty()) throw ConfigError("--out: needs --scene, which it changes");
-  requireNoInput("out", arguments.out, arguments);
-  requireNoInput("residuals", arguments.residuals, arguments);
-  requireNoInput("csv", arguments.csv, arguments);
+  OutputFiles()
+      .reads("--record", arguments.record)
+      .reads("--scene", arguments.scene)
+      .reads("--families", arguments.families)
+      .writes("--out", arguments.out)
+      .writes("--residuals", arguments.residuals)
+      .writes("--csv", arguments.csv)
+      .check();
   arguments.geometry.poisson_ratio = poisson_ratio;
   arguments.models = split(models.empty() ? (arguments.scene.empty() ? "hertz" : "family,hertz") : models);
   arguments.free = split(free);

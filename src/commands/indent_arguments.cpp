@@ -9,6 +9,7 @@
 
 #include "base/config_errors.h"
 #include "base/errors.h"
+#include "base/output_files.h"
 
 namespace microinjection {
 namespace {
@@ -180,6 +181,7 @@ std::optional<IndentArguments> parseIndentArguments(int argc, char** argv) {
   for (const auto& [name, value] : values) {
     if (!value.defaulted()) arguments.given[name] = value.as<std::string>();
   }
+  OutputFiles().reads("--scene", arguments.scene).writes("--csv", arguments.csv).check();
   interpret(texts, arguments);
   return arguments;
 }

@@ -5,6 +5,7 @@
 
 #include "base/config_errors.h"
 #include "base/errors.h"
+#include "base/output_files.h"
 #include "base/standard_output.h"
 #include "vision/camera/image_file.h"
 
@@ -90,6 +91,15 @@ std::optional<MeasureCellArguments> parseMeasureCellArguments(int argc, char** a
   errors.require(arguments.overlay.empty() || hasImageName(arguments.overlay), "--overlay", arguments.overlay, "",
                  "a name of an image, such as overlay.png");
   errors.throwAny();
+  OutputFiles()
+      .reads("INPUT", arguments.input)
+      .reads("--calibration", calibration)
+      .reads("--config", config)
+      .reads("--scene", arguments.scene)
+      .reads("--families", arguments.families)
+      .writes("--out", arguments.out)
+      .writes("--overlay", arguments.overlay)
+      .check();
   if (pixel_size > 0) arguments.vision.pixel_size = pixel_size;
   // Without either one the calibration must be asked for: a file left from another microscope would go unnoticed.
   if (arguments.vision.pixel_size == 0 && arguments.vision.calibration.empty())

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "base/errors.h"
+#include "base/output_files.h"
 
 namespace microinjection {
 namespace {
@@ -110,6 +111,14 @@ PrepareArguments parsePrepareArguments(int argc, char** argv) {
   requireAtLeast("jobs", arguments.jobs, 1);
   requireAtLeast("members", family.members, 1);
   requireAtLeast("check", family.check, 0);
+  OutputFiles()
+      .reads("--scene", arguments.scene)
+      .reads("--family", family.file)
+      .reads("--plan", family.plan)
+      .writes("--csv", family.csv)
+      .writes("--reference", family.reference)
+      .writes("--list", family.list)
+      .check();
   family.jobs = arguments.jobs;
   return arguments;
 }

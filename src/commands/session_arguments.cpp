@@ -6,6 +6,7 @@
 
 #include "base/config_errors.h"
 #include "base/errors.h"
+#include "base/output_files.h"
 #include "base/standard_output.h"
 
 namespace microinjection {
@@ -79,6 +80,11 @@ std::optional<SessionArguments> parseSessionArguments(int argc, char** argv) {
   errors.require(given.count("launch") == 0 || !arguments.launch.empty(), "--launch", "", "", "the path of a file");
   errors.throwAny();
   if (!positional.empty() && !positional.front().empty()) arguments.session = positional.front();
+  OutputFiles()
+      .reads("SESSION", arguments.session)
+      .writes("--launch", arguments.launch)
+      .writes("--view", arguments.view)
+      .check();
   std::istringstream names(only);
   for (std::string name; names >> name;) arguments.only.push_back(name);
   return arguments;

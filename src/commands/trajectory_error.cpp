@@ -14,6 +14,7 @@
 #include "base/errors.h"
 #include "base/exit_status.h"
 #include "base/median.h"
+#include "base/output_files.h"
 #include "base/standard_output.h"
 #include "cell/model/cell_problem.h"
 #include "cell/model/contact_frame.h"
@@ -104,6 +105,11 @@ int run(int argc, char** argv) {
     }
     if (arguments.scene.empty() || arguments.session.empty()) throw ConfigError("--scene and --session are required");
     if (arguments.points < 1) throw ConfigError("--points: must be 1 or more");
+    OutputFiles()
+        .reads("--scene", arguments.scene)
+        .reads("--session", arguments.session)
+        .writes("--csv", arguments.csv)
+        .check();
     return compare(arguments);
   } catch (const po::error& error) {
     std::cerr << "trajectory_error: " << error.what() << "; see --help\n";

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy
 import rosbag
+from output_files import check_outputs
 
 NEEDLE, FORCE = '/needle/measured_cp', '/force_sensor/measured_cf'
 FORCE_FRAME = 'needle_tip'
@@ -75,6 +76,7 @@ def main():
     arguments = parser.parse_args()
     out = arguments.out or arguments.bag.with_suffix('.csv')
     try:
+        check_outputs({'BAG': arguments.bag}, {'--out': out})
         rows = curve(*read(arguments.bag, arguments.needle, arguments.force))
         rows[:, 0] -= rows[0, 0]
         rows = rows[(rows[:, 0] >= arguments.begin) & (rows[:, 0] <= arguments.end)]

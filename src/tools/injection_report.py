@@ -16,6 +16,7 @@ from pathlib import Path
 import matplotlib
 matplotlib.use('Agg')
 import matplotlib.pyplot as plt  # noqa: E402  the backend is chosen before
+from output_files import check_outputs  # noqa: E402
 
 HEADER = ('time', 'cell', 'diameter_m', 'modulus_Pa', 'outcome')
 # Column, factor, digits, heading of the table.
@@ -133,9 +134,10 @@ def main():
     parser.add_argument('--out', help='HTML file; default: beside the notebook')
     parser.add_argument('--day', help='YYYY-MM-DD; default: all rows')
     arguments = parser.parse_args()
+    out = Path(arguments.out or Path(arguments.notebook).with_suffix('.html'))
     try:
+        check_outputs({'NOTEBOOK': arguments.notebook}, {'--out': out})
         rows = read(arguments.notebook, arguments.day)
-        out = Path(arguments.out or Path(arguments.notebook).with_suffix('.html'))
         title = f'Injections of {arguments.day or rows[0]["time"][:10] + " to " + rows[-1]["time"][:10]}'
         out.write_text(page(rows, title), encoding='utf-8')
     except (OSError, ValueError) as error:

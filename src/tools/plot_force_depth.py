@@ -12,6 +12,7 @@ import matplotlib
 matplotlib.use('Agg')
 import matplotlib.pyplot as plt  # noqa: E402  the backend is chosen before
 import numpy  # noqa: E402
+from output_files import check_outputs  # noqa: E402
 
 TEXTS = ('phase', 'injection_state')  # columns
 OUTWARD = ('retract', 'done')  # phases; in all others the needle goes in or rests
@@ -199,6 +200,10 @@ def main():
     parser.add_argument('png', type=Path)
     parser.add_argument('--layers', default='', help='names of the membranes, outermost first, with commas')
     arguments = parser.parse_args()
+    try:
+        check_outputs({'CSV': arguments.csv}, {'PNG': arguments.png})
+    except ValueError as error:
+        parser.exit(1, f'plot_force_depth.py: {error}\n')
     plot(arguments.csv, arguments.png, [name for name in arguments.layers.split(',') if name])
 
 

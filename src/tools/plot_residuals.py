@@ -12,6 +12,7 @@ import matplotlib
 matplotlib.use('Agg')
 import matplotlib.pyplot as plt  # noqa: E402  the backend is chosen before
 import numpy  # noqa: E402
+from output_files import check_outputs  # noqa: E402
 
 COLUMNS = ('depth_m', 'force_N', 'fitted_N', 'residual_N')
 SHARE = 40  # samples of a running median: a fortieth of the record
@@ -70,6 +71,7 @@ def main():
     arguments = parser.parse_args()
     out = arguments.out or arguments.csv.with_suffix('.png')
     try:
+        check_outputs({'CSV': arguments.csv}, {'--out': out})
         plot(read(arguments.csv), out)
     except (OSError, ValueError) as error:
         print(f'plot_residuals: {error}', file=sys.stderr)

@@ -11,6 +11,7 @@ import matplotlib
 matplotlib.use('Agg')
 import matplotlib.pyplot as plt  # noqa: E402  the backend is chosen before
 import numpy  # noqa: E402
+from output_files import check_outputs  # noqa: E402
 
 # Column of the points, label, colour.
 SHARES = (('force_points', 'peak force', '#4c78a8'), ('deformation_points', 'deformation', '#72b7b2'),
@@ -109,6 +110,7 @@ def main():
     parser.add_argument('--operator', help='whose sessions; default: of the last row')
     arguments = parser.parse_args()
     try:
+        check_outputs({'HISTORY': arguments.history}, {'PNG': arguments.png})
         plot(arguments.history, arguments.png, arguments.operator)
     except (OSError, ValueError, KeyError) as error:
         parser.exit(1, f'plot_training.py: {error}\n')
