@@ -36,7 +36,7 @@ std::string lower(std::string text) {
 std::pair<std::string, std::string> split(const std::string& title) {
   std::string words;
   for (const char c : title) {
-    const bool separates = std::string(" _([").find(c) != std::string::npos;
+    const bool separates = std::string(" _([/").find(c) != std::string::npos;
     if (separates && !words.empty() && words.back() != '_') words += '_';
     if (!separates && std::string(")]").find(c) == std::string::npos) words += c;
   }
@@ -51,8 +51,11 @@ std::string allowed(const Quantity& quantity) {
   return text;
 }
 
-double unitOf(const Quantity& quantity, const std::string& unit, const std::string& where) {
-  const auto found = quantity.units.find(unit == "µm" ? "um" : unit);
+double unitOf(const Quantity& quantity, std::string unit, const std::string& where) {
+  for (const std::string micro : {"\u00B5", "\u03BC"}) {
+    if (unit.rfind(micro, 0) == 0) unit = "u" + unit.substr(micro.size());
+  }
+  const auto found = quantity.units.find(unit);
   if (found == quantity.units.end())
     throw ConfigError(where + ": unit '" + unit + "': must be one of " + allowed(quantity));
   return found->second;
@@ -68,48 +71,89 @@ std::size_t indexOf(const std::string& wanted, const std::vector<std::string>& t
   throw ConfigError(where + ": the file has no column '" + wanted + "'");
 }
 
-std::optional<ForceColumn> search(const Quantity& quantity, const std::vector<std::string>& titles,
-                                  const std::string& path) {
+/// "travel, position" is a position, too.
+bool isNamed(const std::string& own, const std::string& name) {
+  const std::string behind_comma = ",_" + name;
+  return own == name || (own.size() > behind_comma.size() &&
+                         own.compare(own.size() - behind_comma.size(), std::string::npos, behind_comma) == 0);
+}
+
+std::optional<ForceColumn> search(const Quantity& quantity, const TextTable& table) {
+  const std::vector<std::string> titles = table.titles();
   for (const std::string& name : quantity.names) {
     for (std::size_t i = 0; i < titles.size(); ++i) {
-      const auto [own, unit] = split(titles[i]);
-      if (own == name && !unit.empty())
-        return ForceColumn{i, unitOf(quantity, unit, path + ": column '" + titles[i] + "'")};
-      if (own != name || !unit.empty()) continue;
-      throw ConfigError(path + ": column '" + titles[i] + "': has no unit; give --column " + quantity.name + "=" +
-                        titles[i] + ":UNIT, UNIT one of " + allowed(quantity));
+      if (table.columns[i].clock && quantity.name == "time") return ForceColumn{i, 1};
+      auto [own, unit] = split(titles[i]);
+      if (lower(titles[i]) == name) own = name, unit.clear();
+      if (!isNamed(own, name)) continue;
+      if (!unit.empty()) return ForceColumn{i, unitOf(quantity, unit, table.path + ": column '" + titles[i] + "'")};
+      throw ConfigError(table.path + ": column '" + titles[i] + "': has no unit; give --column " + quantity.name +
+                        "=" + titles[i] + ":UNIT, UNIT one of " + allowed(quantity));
     }
   }
   return std::nullopt;
 }
 
+/// What is there, for a message.
+std::string shown(const TextTable& table) {
+  std::string text;
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    const std::string title = table.titles()[i];
+    text += (i == 0 ? "" : ", ") + (title.empty() ? std::to_string(i + 1) : "'" + title + "'");
+  }
+  return text;
+}
+
+/// A column without numbers is none; one that must be there is an error.
+bool hasNumbers(const TextTable& table, const std::string& quantity, const ForceColumn& column) {
+  const TextTable::Column& found = table.columns[column.index];
+  if (found.numbers > 0) return true;
+  if (quantity != "position" && quantity != "force") return false;
+  std::string text = table.path;
+  if (found.text_line > 0) text += ", line " + std::to_string(found.text_line);
+  throw ConfigError(text + ": column '" + table.titles()[column.index] + "', the " + quantity + ", has no numbers" +
+                    (found.text.empty() ? "" : ", but '" + found.text + "'"));
+}
+
 }  // namespace
 
-std::map<std::string, ForceColumn> findForceColumns(const std::vector<std::string>& titles,
+std::map<std::string, ForceColumn> findForceColumns(const TextTable& table,
                                                     const std::map<std::string, std::string>& given,
-                                                    const std::string& path) {
+                                                    std::vector<std::string>& notes) {
   std::map<std::string, ForceColumn> columns;
   for (const Quantity& quantity : quantities()) {
     const auto named = given.find(quantity.name);
+    std::optional<ForceColumn> found;
     if (named == given.end()) {
-      if (const auto found = search(quantity, titles, path)) columns[quantity.name] = *found;
-      continue;
+      found = search(quantity, table);
+    } else {
+      const std::string where = "--column " + quantity.name + "=" + named->second;
+      const std::size_t colon = named->second.rfind(':');
+      if (colon == std::string::npos) throw ConfigError(where + ": must be NAME:UNIT");
+      found = ForceColumn{indexOf(named->second.substr(0, colon), table.titles(), where),
+                          unitOf(quantity, named->second.substr(colon + 1), where)};
     }
-    const std::string where = "--column " + quantity.name + "=" + named->second;
-    const std::size_t colon = named->second.rfind(':');
-    if (colon == std::string::npos) throw ConfigError(where + ": must be NAME:UNIT");
-    columns[quantity.name] = {indexOf(named->second.substr(0, colon), titles, where),
-                              unitOf(quantity, named->second.substr(colon + 1), where)};
+    if (!found) continue;
+    if (hasNumbers(table, quantity.name, *found)) {
+      columns[quantity.name] = *found;
+    } else {
+      notes.push_back("column '" + table.titles()[found->index] + "', the " + quantity.name +
+                      ", has no numbers and is left out");
+    }
   }
   for (const auto& [name, column] : given) {
-    if (columns.count(name) == 0) {
-      throw ConfigError("--column " + name + ": must be one of time, position, deflection, force");
-    }
+    const bool known = std::any_of(quantities().begin(), quantities().end(),
+                                   [name = name](const Quantity& quantity) { return quantity.name == name; });
+    if (!known) throw ConfigError("--column " + name + ": must be one of time, position, deflection, force");
   }
   for (const char* name : {"position", "force"}) {
-    if (columns.count(name) == 0) {
-      throw ConfigError(path + ": has no column of the " + name + "; name one with --column " + name + "=NAME:UNIT");
-    }
+    if (columns.count(name) > 0) continue;
+    const std::string titled =
+        table.title_line > 0 ? "line " + std::to_string(table.title_line) + " has the columns " + shown(table)
+                             : "it has no titles before line " + std::to_string(table.first_line) + ", and " +
+                                   std::to_string(table.columns.size()) + " columns";
+    throw ConfigError(table.path + ": has no column of the " + name + ": " + titled + "; name one with --column " +
+                      name + "=NAME:UNIT, NAME a title or a number from 1");
   }
   return columns;
 }

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "base/text_table.h"
+
 namespace microinjection {
 
 /// A column of a table and what its numbers are multiplied with to be in SI units.
@@ -12,10 +14,11 @@ struct ForceColumn {
   double unit = 1;
 };
 
-/// Columns of time, position, deflection and force by the table's line of names; see readForceCurve.
-/// `given`: quantity -> "name:unit". Position and force are always there. Throws ConfigError.
-std::map<std::string, ForceColumn> findForceColumns(const std::vector<std::string>& names,
+/// Columns of time, position, deflection and force by the table's titles; see readForceCurve.
+/// `given`: quantity -> "name:unit". Position and force are always there. `notes` takes what was left out. Throws
+/// ConfigError.
+std::map<std::string, ForceColumn> findForceColumns(const TextTable& table,
                                                     const std::map<std::string, std::string>& given,
-                                                    const std::string& path);
+                                                    std::vector<std::string>& notes);
 
 }  // namespace microinjection

@@ -2,14 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <fstream>
-#include <limits>
 #include <numeric>
-#include <sstream>
 
 #include "base/errors.h"
 #include "base/median.h"
+#include "base/text_table.h"
 #include "cell/identification/drag.h"
 #include "cell/identification/force_columns.h"
 
@@ -18,33 +15,6 @@ namespace {
 
 constexpr std::size_t kFewestSamples = 20;  ///< samples
 constexpr double kBent = 0.1;               ///< of its rise: a straighter record is in contact from its begin
-
-/// A title may have a comma, a number of some countries has one.
-char separatorOf(const std::string& titles) {
-  for (const char separator : {';', '\t', ','}) {
-    if (titles.find(separator) != std::string::npos) return separator;
-  }
-  return ' ';
-}
-
-std::vector<std::string> splitRow(const std::string& line, char separator) {
-  std::vector<std::string> items;
-  std::istringstream in(line);
-  for (std::string item; std::getline(in, item, separator);) {
-    const std::size_t first = item.find_first_not_of(" \t\r\""), last = item.find_last_not_of(" \t\r\"");
-    if (first == std::string::npos && separator == ' ') continue;
-    items.push_back(first == std::string::npos ? "" : item.substr(first, last - first + 1));
-  }
-  return items;
-}
-
-double number(const std::vector<std::string>& row, const ForceColumn& column) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  if (column.index >= row.size() || row[column.index].empty()) return kNone;
-  char* end = nullptr;
-  const double value = std::strtod(row[column.index].c_str(), &end);
-  return *end == '\0' ? column.unit * value : kNone;
-}
 
 /// Value at the deepest samples minus that of the straight line through those of the first half, which is
 /// a drift; for a straight record, its whole rise.
@@ -120,44 +90,31 @@ void cutRetract(ForceCurve& curve) {
 }  // namespace
 
 ForceCurve readForceCurve(const std::string& path, const ForceCurveConfig& config) {
-  std::ifstream file(path);
-  if (!file) throw ConfigError(path + ": cannot be read");
-  std::vector<std::string> titles;
-  std::map<std::string, ForceColumn> columns;
+  const TextTable table = readTextTable(path);
   ForceCurve curve;
+  curve.notes = table.notes;
+  const std::map<std::string, ForceColumn> columns = findForceColumns(table, config.columns, curve.notes);
+  const auto valueOf = [&](const char* quantity, std::size_t row, double otherwise) {
+    const auto found = columns.find(quantity);
+    return found == columns.end() ? otherwise : found->second.unit * table.columns[found->second.index].values[row];
+  };
+  curve.timed = columns.count("time") > 0;
   std::vector<double> deflections;
-  std::size_t dropped = 0;
-  char separator = ' ';
-  for (std::string line; std::getline(file, line);) {
-    if (line.find_first_not_of(" \t\r") == std::string::npos || line[line.find_first_not_of(" \t")] == '#') continue;
-    if (titles.empty()) separator = separatorOf(line);
-    const std::vector<std::string> row = splitRow(line, separator);
-    if (titles.empty()) {
-      titles = row;
-      constexpr char kByteOrderMark[] = "\xEF\xBB\xBF";
-      if (titles.front().rfind(kByteOrderMark, 0) == 0) titles.front().erase(0, 3);
-      columns = findForceColumns(titles, config.columns, path);
-      curve.timed = columns.count("time") > 0;
-      continue;
-    }
-    const double height = number(row, columns["position"]), force = number(row, columns["force"]);
-    const double deflection = columns.count("deflection") > 0 ? number(row, columns["deflection"]) : 0;
-    const double time = curve.timed ? number(row, columns["time"]) : static_cast<double>(curve.size());
-    if (!std::isfinite(height + force + deflection + time)) {
-      ++dropped;
-      continue;
-    }
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const double height = valueOf("position", row, 0), force = valueOf("force", row, 0);
+    const double deflection = valueOf("deflection", row, 0);
+    const double time = valueOf("time", row, static_cast<double>(curve.size()));
+    if (!std::isfinite(height + force + deflection + time)) continue;
     curve.time.push_back(time);
     curve.position.push_back(height);
     deflections.push_back(deflection);
     curve.force.push_back(force);
   }
-  if (titles.empty()) throw ConfigError(path + ": is empty");
+  const std::size_t dropped = table.rows() - curve.size();
   if (dropped > 0) curve.notes.push_back(std::to_string(dropped) + " rows without numbers are left out");
   if (curve.size() < kFewestSamples) {
-    throw ConfigError(path + ": " + std::to_string(curve.size()) + " rows of numbers: must be at least " +
-                      std::to_string(kFewestSamples) +
-                      (separator == ',' ? "" : "; the decimal sign is a point, not a comma"));
+    throw ConfigError(path + ": " + std::to_string(curve.size()) + " rows have a number in each column that is used, " +
+                      std::to_string(dropped) + " have not: must be at least " + std::to_string(kFewestSamples));
   }
   if (!curve.timed) curve.notes.emplace_back("there is no column of the time: a drift is one a sample");
   orient(curve);

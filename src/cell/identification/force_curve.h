@@ -28,9 +28,8 @@ struct ForceCurveConfig {
   bool whole = false;  ///< also what follows the deepest point
 };
 
-/// Reads columns of numbers (comma, semicolon, tab or blanks between them; # begins a comment) below
-/// a line of names. Names begin with time or t; position, tip, depth, indentation, height or z;
-/// deflection; force or f, and end with the unit: force_nN, "height (um)", z[m]. With a deflection,
+/// Reads columns of a table (base/text_table.h) by their names. Names begin with time or t; position, tip, depth, indentation, height or z;
+/// deflection; force or f, and end with the unit: force_nN, "height (um)", z[m], "time / s". With a deflection,
 /// the tip's position is height minus deflection. Rows without a number are left out; sign and
 /// direction are found from the record, because laboratories differ in them. Throws ConfigError that
 /// names file, column and what is allowed.

@@ -1,0 +1,380 @@
+#include "base/text_table.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+#include <optional>
+#include <regex>
+
+#include "base/errors.h"
+#include "base/parse_number.h"
+#include "base/text_lines.h"
+
+namespace microinjection {
+namespace {
+
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+constexpr double kDay = 86400;         ///< s
+constexpr std::size_t kLooked = 3000;  ///< lines that show how a table is written; a preamble is shorter
+
+struct Cell {
+  std::string text;
+  bool quoted = false;
+};
+using Cells = std::vector<Cell>;
+
+std::string trimmed(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
+  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
+}
+
+/// Between blanks: runs of them count once. A quote within quotes is doubled (RFC 4180).
+Cells split(const std::string& line, char separator) {
+  Cells cells(1);
+  bool open = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    Cell& cell = cells.back();
+    if (open && line[i] == '"' && line.compare(i, 2, "\"\"") == 0) {
+      cell.text += line[i++];
+    } else if (line[i] == '"' && (open || trimmed(cell.text).empty())) {
+      cell.text = open ? cell.text : "";
+      open = !open;
+      cell.quoted = true;
+    } else if (!open && (line[i] == separator || (separator == ' ' && line[i] == '\t'))) {
+      if (separator != ' ' || !cell.text.empty()) cells.emplace_back();
+    } else {
+      cell.text += line[i];
+    }
+  }
+  if (separator == ' ' && cells.size() > 1 && cells.back().text.empty()) cells.pop_back();
+  for (Cell& cell : cells) {
+    if (!cell.quoted) cell.text = trimmed(cell.text);
+  }
+  return cells;
+}
+
+/// Digits in threes, as 1,234,567.8 with the separator ',' and the sign '.'.
+bool hasThousands(const std::string& text, char separator, char sign) {
+  std::size_t i = !text.empty() && (text[0] == '-' || text[0] == '+') ? 1 : 0;
+  const std::size_t first = text.find(separator);
+  if (first == std::string::npos || first == i || first > i + 3 || (text[i] == '0' && first == i + 1)) return false;
+  while (i < text.size() && std::isdigit(static_cast<unsigned char>(text[i]))) ++i;
+  while (i < text.size() && text[i] == separator) {
+    for (int digit = 1; digit <= 3; ++digit) {
+      if (i + static_cast<std::size_t>(digit) >= text.size() ||
+          !std::isdigit(static_cast<unsigned char>(text[i + static_cast<std::size_t>(digit)])))
+        return false;
+    }
+    i += 4;
+  }
+  return i == text.size() || text[i] == sign;
+}
+
+std::optional<double> numberIn(std::string text, char sign) {
+  const char other = sign == '.' ? ',' : '.';
+  if (hasThousands(text, other, sign)) text.erase(std::remove(text.begin(), text.end(), other), text.end());
+  if (text.find(other) != std::string::npos) return std::nullopt;
+  std::replace(text.begin(), text.end(), ',', '.');
+  if (!text.empty() && text[0] == '+') text.erase(0, 1);
+  return parseNumber<double>(text);
+}
+
+/// s since midnight, or since 1970 with a date.
+std::optional<double> clockIn(const std::string& text) {
+  static const std::regex pattern(R"((?:(\d{4})-(\d{1,2})-(\d{1,2})[T ])?(\d{1,2}):(\d{2})(?::(\d{2}(?:[.,]\d+)?))?Z?)");
+  std::smatch match;
+  if (text.find(':') == std::string::npos || !std::regex_match(text, match, pattern)) return std::nullopt;
+  const auto part = [&](int i) { return match[i].matched ? std::stoi(match[i].str()) : 0; };
+  std::string seconds = match[6].matched ? match[6].str() : "0";
+  std::replace(seconds.begin(), seconds.end(), ',', '.');
+  double days = 0;
+  if (match[1].matched) {  // of the proleptic Gregorian calendar
+    const int year = part(1) - (part(2) <= 2 ? 1 : 0), era = year / 400, of_era = year - 400 * era;
+    const int of_year = (153 * (part(2) + (part(2) > 2 ? -3 : 9)) + 2) / 5 + part(3) - 1;
+    days = 146097.0 * era + 365.0 * of_era + of_era / 4 - of_era / 100 + of_year - 719468;
+  }
+  return kDay * days + 3600 * part(4) + 60 * part(5) + parseNumber<double>(seconds).value_or(0);
+}
+
+bool isMissing(const std::string& text) {
+  static const char* const kWords[] = {"nan", "na", "n/a", "-", "--", "null", "none", "inf", "-inf", "#n/a"};
+  std::string lower = text;
+  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
+  return std::any_of(std::begin(kWords), std::end(kWords), [&](const char* word) { return lower == word; });
+}
+
+/// Whether it may be a number, whichever the decimal sign is.
+bool mayBeNumber(const std::string& text) {
+  return numberIn(text, '.') || numberIn(text, ',') || clockIn(text) || isMissing(text);
+}
+
+bool isBlank(const std::string& line) { return trimmed(line).empty(); }
+/// The text of a comment, without its sign.
+std::optional<std::string> commentIn(const std::string& line) {
+  const std::string text = trimmed(line);
+  if (!text.empty() && (text[0] == '#' || text[0] == '%')) return trimmed(text.substr(text.find_first_not_of("#%", 0)));
+  if (text.rfind("//", 0) == 0) return trimmed(text.substr(2));
+  return std::nullopt;
+}
+
+class TableReader {
+ public:
+  explicit TableReader(const std::string& path) {
+    table_.path = path;
+    lines_ = readTextLines(path, table_.notes);
+  }
+
+  TextTable read() {
+    findRows();
+    findTitles();
+    chooseDecimalSign();
+    readRows();
+    return std::move(table_);
+  }
+
+ private:
+  [[noreturn]] void fail(std::size_t index, const std::string& text) const {
+    throw ConfigError(table_.path + ", line " + std::to_string(index + 1) + ": " + text);
+  }
+  bool isSkipped(std::size_t i) const { return isBlank(lines_[i]) || commentIn(lines_[i]).has_value(); }
+  Cells cellsOf(std::size_t i) const { return split(lines_[i], separator_); }
+
+  static int textsIn(const Cells& cells) {
+    return static_cast<int>(std::count_if(cells.begin(), cells.end(), [](const Cell& cell) {
+      return !cell.text.empty() && !mayBeNumber(cell.text);
+    }));
+  }
+  /// Cells that may be numbers, less those that are texts; 0: no row of a table, which has two numbers at least.
+  static int numbersIn(const Cells& cells) {
+    const int filled = static_cast<int>(
+        std::count_if(cells.begin(), cells.end(), [](const Cell& cell) { return !cell.text.empty(); }));
+    const int texts = textsIn(cells);
+    return filled - texts >= 2 ? std::max(0, filled - 2 * texts) : 0;
+  }
+  static bool isRow(const Cells& cells) { return numbersIn(cells) > 0; }
+
+  /// The separator and the number of cells with which there are the most numbers.
+  void findRows() {
+    std::map<char, std::map<std::size_t, int>> counts;
+    std::string said = lines_.empty() ? "" : lines_.front();
+    std::transform(said.begin(), said.end(), said.begin(), [](unsigned char c) { return std::tolower(c); });
+    if (said.size() == 5 && said.rfind("sep=", 0) == 0) {
+      said_separator_ = true;
+      separator_ = lines_.front()[4];
+    }
+    int most = 0;
+    const std::string separators = said_separator_ ? std::string(1, separator_) : ";\t, ";
+    for (const char separator : separators) {
+      for (std::size_t i = said_separator_ ? 1 : 0, looked = 0; i < lines_.size() && looked < kLooked; ++i) {
+        if (isSkipped(i)) continue;
+        ++looked;
+        const Cells cells = split(lines_[i], separator);
+        const int count = counts[separator][cells.size()] += numbersIn(cells);
+        if (count <= most) continue;
+        most = count;
+        width_ = cells.size();
+        separator_ = separator;
+      }
+    }
+    if (most == 0) fail(lines_.empty() ? 0 : firstText(), notATable());
+    first_ = firstRow();
+    table_.first_line = first_ + 1;
+  }
+  /// A preamble may have lines with as many cells: not with as few texts as most rows have.
+  std::size_t firstRow() const {
+    std::map<int, std::size_t> rows, firsts;  // by their texts
+    for (std::size_t i = said_separator_ ? 1 : 0, looked = 0; i < lines_.size() && looked < kLooked; ++i) {
+      if (isSkipped(i)) continue;
+      ++looked;
+      const Cells cells = cellsOf(i);
+      if (cells.size() != width_ || !isRow(cells)) continue;
+      firsts.emplace(textsIn(cells), i);
+      ++rows[textsIn(cells)];
+    }
+    const auto most = std::max_element(rows.begin(), rows.end(),
+                                       [](const auto& a, const auto& b) { return a.second < b.second; });
+    return firsts.at(most->first);
+  }
+  std::size_t firstText() const {
+    std::size_t i = 0;
+    while (i + 1 < lines_.size() && isBlank(lines_[i])) ++i;
+    return i;
+  }
+  std::string notATable() const {
+    if (lines_.empty()) return "the file is empty";
+    return "'" + shown(lines_[firstText()]) +
+           "': the file has no row with two numbers; it must be a table of numbers between commas, semicolons, tabs or "
+           "blanks";
+  }
+  static std::string shown(const std::string& text) { return text.size() > 60 ? text.substr(0, 57) + "..." : text; }
+
+  /// Cells of a line of titles. Between blanks "Time (s)" is one.
+  std::vector<std::string> titlesIn(const std::string& line) const {
+    std::vector<std::string> titles;
+    for (const Cell& cell : split(line, separator_)) {
+      const bool goes_on = separator_ == ' ' && !titles.empty() && !cell.text.empty() &&
+                           (cell.text[0] == '(' || cell.text[0] == '[' || cell.text[0] == '/' || titles.back().back() == '/');
+      if (goes_on) {
+        titles.back() += " " + cell.text;
+      } else {
+        titles.push_back(trimmed(cell.text));
+      }
+    }
+    if (titles.size() > width_ && titles.back().empty()) titles.pop_back();
+    // Each row, but not the titles, ends with a separator.
+    if (separator_ != ' ' && titles.size() + 1 == width_ && cellsOf(first_).back().text.empty()) titles.emplace_back();
+    return titles;
+  }
+  static bool isUnit(const std::string& text) {
+    static const std::regex pattern(R"([\[(]?\s*(|[munpfkM]|µ|μ)(s|m|N|V|Pa|A|Hz|g|rad|deg)\s*[\])]?|[\[(]?[%a]\.?u?\.?[\])]?|[\[(]?-?[\])]?)");
+    return std::regex_match(text, pattern);
+  }
+
+  void findTitles() {
+    std::vector<std::size_t> above;  // the nearest first
+    for (std::size_t i = first_; i-- > (said_separator_ ? 1 : 0);) {
+      if (isBlank(lines_[i])) continue;
+      if (table_.before.empty() && !commentIn(lines_[i])) table_.before = lines_[i];
+      above.push_back(i);
+    }
+    const auto has_names = [](const std::vector<std::string>& titles) {
+      return std::any_of(titles.begin(), titles.end(), [](const std::string& title) {
+        return std::any_of(title.begin(), title.end(), [](unsigned char c) { return std::isalpha(c); });
+      });
+    };
+    std::vector<std::string> units;
+    for (std::size_t k = 0; k < above.size() && k < 3; ++k) {
+      static const std::regex label("^(columns|channels|fields|units)\\s*:\\s*", std::regex::icase);
+      const std::optional<std::string> comment = commentIn(lines_[above[k]]);
+      const std::vector<std::string> titles =
+          titlesIn(comment ? std::regex_replace(*comment, label, "") : lines_[above[k]]);
+      if (separator_ == ',' && 2 * titles.size() == width_ && has_names(titles)) {
+        fail(above[k], "has " + std::to_string(titles.size()) + " cells, the rows have " + std::to_string(width_) +
+                           ": a comma cannot be the separator and the decimal sign, but in quotes: '" +
+                           shown(lines_[first_]) + "'");
+      }
+      if (titles.size() != width_ || !has_names(titles)) break;
+      if (units.empty() && std::all_of(titles.begin(), titles.end(), isUnit)) {
+        units = titles;
+        continue;
+      }
+      table_.title_line = above[k] + 1;
+      for (std::size_t c = 0; c < width_; ++c) {
+        table_.columns.push_back({});
+        table_.columns.back().title = titles[c];
+        if (!units.empty()) table_.columns.back().unit = units[c];
+      }
+      if (commentIn(lines_[above[k]])) table_.notes.emplace_back("the titles are those of the last comment");
+      return;
+    }
+    table_.columns.resize(width_);
+  }
+
+  void eachRow(const std::function<void(std::size_t, const Cells&)>& use) {
+    std::size_t last = lines_.size();
+    while (last > first_ && isSkipped(last - 1)) --last;
+    for (std::size_t i = first_; i < last; ++i) {
+      if (isSkipped(i)) continue;
+      const Cells cells = cellsOf(i);
+      if (table_.title_line > 0 && lines_[i] == lines_[table_.title_line - 1]) {
+        use(i, {});
+      } else if (cells.size() == width_) {
+        use(i, cells);
+      } else if (i + 1 == last && cells.size() < width_) {
+        cut_off_ = i + 1;
+      } else {
+        std::string text = "has " + std::to_string(cells.size()) + " cells, the table has " + std::to_string(width_);
+        if (separator_ == ',') text += "; a comma is the separator here, and cannot be the decimal sign, too, but in quotes";
+        fail(i, text + ": '" + shown(lines_[i]) + "'");
+      }
+    }
+  }
+
+  /// The sign that the numbers have. Digits in threes may be either: others tell.
+  void chooseDecimalSign() {
+    std::size_t points = 0, commas = 0, unclear = 0;
+    eachRow([&](std::size_t i, const Cells& cells) {
+      for (const Cell& cell : cells) {
+        if (cell.text.find_first_of(".,") == std::string::npos) continue;
+        const bool by_point = numberIn(cell.text, '.').has_value(), by_comma = numberIn(cell.text, ',').has_value();
+        if (by_point && by_comma) unclear = i + 1;
+        if (by_point && !by_comma && points == 0) points = i + 1;
+        if (by_comma && !by_point && commas == 0) commas = i + 1;
+      }
+    });
+    if (points > 0 && commas > 0)
+      fail(std::max(points, commas) - 1, "the decimal sign is another one than in line " +
+                                             std::to_string(std::min(points, commas)) + ": '" +
+                                             shown(lines_[std::max(points, commas) - 1]) + "'");
+    if (points == 0 && commas == 0 && unclear > 0 && lines_[unclear - 1].find(',') != std::string::npos &&
+        lines_[unclear - 1].find('.') == std::string::npos && separator_ != ',')
+      commas = unclear;
+    sign_ = commas > 0 ? ',' : '.';
+    if (commas > 0) table_.notes.emplace_back("the decimal sign is a comma");
+  }
+
+  void readRows() {
+    eachRow([this](std::size_t i, const Cells& cells) {
+      if (cells.empty()) {
+        table_.parts.push_back(table_.rows());
+        return;
+      }
+      for (std::size_t c = 0; c < width_; ++c) add(table_.columns[c], cells[c].text, i);
+    });
+    if (cut_off_ > 0)
+      table_.notes.push_back("line " + std::to_string(cut_off_) + ", the last one, is cut off and left out");
+    for (TextTable::Column& column : table_.columns) startClock(column);
+    if (table_.columns.back().numbers == 0 && table_.columns.back().text.empty() && table_.columns.back().title.empty() &&
+        width_ > 1)
+      table_.columns.pop_back();  // each line ends with a separator
+  }
+
+  void add(TextTable::Column& column, const std::string& text, std::size_t line) {
+    std::optional<double> value = text.empty() || isMissing(text) ? std::nullopt : numberIn(text, sign_);
+    if (!value && !text.empty() && !isMissing(text)) {
+      value = clockIn(text);
+      column.clock = column.clock || value.has_value();
+      if (!value && column.text.empty()) {
+        column.text = text;
+        column.text_line = line + 1;
+      }
+    }
+    column.values.push_back(value.value_or(kNoNumber));
+    if (value) ++column.numbers;
+  }
+
+  /// From the first time on, over midnight, too.
+  static void startClock(TextTable::Column& column) {
+    if (!column.clock) return;
+    double first = kNoNumber, before = kNoNumber, days = 0;
+    for (double& value : column.values) {
+      if (!std::isfinite(value)) continue;
+      if (value + days < before - kDay / 2) days += kDay;
+      before = value + days;
+      if (!std::isfinite(first)) first = before;
+      value = before - first;
+    }
+  }
+
+  TextTable table_;
+  std::vector<std::string> lines_;
+  bool said_separator_ = false;
+  char separator_ = ',', sign_ = '.';
+  std::size_t width_ = 0, first_ = 0, cut_off_ = 0;
+};
+
+}  // namespace
+
+std::vector<std::string> TextTable::titles() const {
+  std::vector<std::string> titles;
+  for (const Column& column : columns)
+    titles.push_back(column.unit.empty() ? column.title : column.title + " (" + column.unit + ")");
+  return titles;
+}
+
+TextTable readTextTable(const std::string& path) { return TableReader(path).read(); }
+
+}  // namespace microinjection
