@@ -326,7 +326,10 @@ class TableReader {
     });
     if (cut_off_ > 0)
       table_.notes.push_back("line " + std::to_string(cut_off_) + ", the last one, is cut off and left out");
-    for (TextTable::Column& column : table_.columns) startClock(column);
+    for (TextTable::Column& column : table_.columns) {
+      startClock(column);
+      if (!column.texts.empty()) column.texts.resize(column.values.size());
+    }
     if (table_.columns.back().numbers == 0 && table_.columns.back().text.empty() && table_.columns.back().title.empty() &&
         width_ > 1)
       table_.columns.pop_back();  // each line ends with a separator
@@ -340,6 +343,10 @@ class TableReader {
       if (!value && column.text.empty()) {
         column.text = text;
         column.text_line = line + 1;
+      }
+      if (!value) {
+        column.texts.resize(column.values.size());
+        column.texts.push_back(text);
       }
     }
     column.values.push_back(value.value_or(kNoNumber));

@@ -14,7 +14,8 @@ struct TextTable {
     std::vector<double> values;  ///< one for each row; not a number where the cell is empty or a text
     std::size_t numbers = 0;     ///< cells that are numbers, or times of the day
     bool clock = false;          ///< of the day: the values are s since the first one
-    std::string text;            ///< the first cell that is neither empty nor a number; empty: there is none
+    std::vector<std::string> texts;  ///< cells that are neither empty nor numbers, else empty; none: there is no such
+    std::string text;            ///< the first one of them
     std::size_t text_line = 0;   ///< its line
   };
 

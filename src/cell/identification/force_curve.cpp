@@ -9,11 +9,14 @@
 #include "base/text_table.h"
 #include "cell/identification/drag.h"
 #include "cell/identification/force_columns.h"
+#include "cell/identification/way_in.h"
 
 namespace microinjection {
 namespace {
 
 constexpr std::size_t kFewestSamples = 20;  ///< samples
+constexpr double kNear = 0.15;              ///< of the way, to the end of a record
+constexpr double kClearly = 5;              ///< times the spread of the force at the other end
 constexpr double kBent = 0.1;               ///< of its rise: a straighter record is in contact from its begin
 
 /// Value at the deepest samples minus that of the straight line through those of the first half, which is
@@ -36,10 +39,6 @@ double rise(const ForceCurve& curve, const std::vector<double>& values) {
   const double slope = x1 > x0 ? (y1 - y0) / (x1 - x0) : 0;
   const double beyond = y2 - y0 - slope * (x2 - x0);
   return std::abs(beyond) > kBent * std::abs(y2 - y0) ? beyond : y2 - y0;
-}
-
-void keepFirst(ForceCurve& curve, std::size_t count) {
-  for (std::vector<double>* values : {&curve.time, &curve.position, &curve.force}) values->resize(count);
 }
 
 /// The positions; one that is farther from its neighbours' median than any step is no place of the tip, and
@@ -65,7 +64,18 @@ void orient(ForceCurve& curve) {
   const std::vector<double> path = withoutSpikes(curve.position);
   const auto farthest = std::max_element(
       path.begin(), path.end(), [&](double a, double b) { return std::abs(a - path[0]) < std::abs(b - path[0]); });
-  if (*farthest < path[0]) {
+  // A record may begin in the cell, with the way out: there the force changes with the place.
+  const double way = *farthest - path[0];
+  const auto spread_near = [&](double place) {
+    std::vector<double> forces;
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      if (std::abs(path[i] - place) <= kNear * std::abs(way)) forces.push_back(curve.force[i]);
+    }
+    std::sort(forces.begin(), forces.end());
+    return forces.empty() ? 0 : forces[forces.size() * 19 / 20] - forces[forces.size() / 20];
+  };
+  const bool begins_in_cell = spread_near(path[0]) > kClearly * spread_near(*farthest);
+  if ((*farthest < path[0]) != begins_in_cell) {
     for (double& x : curve.position) x = -x;
     curve.notes.emplace_back("the position falls on the way in: its sign is turned");
   }
@@ -77,15 +87,77 @@ void orientForce(ForceCurve& curve) {
   curve.notes.emplace_back("the force falls on the way in: its sign is turned");
 }
 
-/// Nothing is known about a record that turns back: only the way in is elastic.
-void cutRetract(ForceCurve& curve) {
-  const std::vector<double> path = withoutSpikes(curve.position);
-  const auto deepest = std::max_element(path.begin(), path.end());
-  const auto count = static_cast<std::size_t>(deepest - path.begin()) + 1;
-  if (count == curve.size()) return;
-  curve.notes.push_back("the " + std::to_string(curve.size() - count) + " samples behind the deepest one are left out");
-  keepFirst(curve, count);
+void keep(ForceCurve& curve, std::size_t begin, std::size_t end) {
+  for (std::vector<double>* values : {&curve.time, &curve.position, &curve.force}) {
+    values->resize(end);
+    values->erase(values->begin(), values->begin() + static_cast<std::ptrdiff_t>(begin));
+  }
 }
+
+void keepOnly(ForceCurve& curve, const std::vector<bool>& kept) {
+  for (std::vector<double>* values : {&curve.time, &curve.position, &curve.force}) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+      if (kept[i]) (*values)[count++] = (*values)[i];
+    }
+    values->resize(count);
+  }
+}
+
+/// Only the way in is elastic.
+void cutToWayIn(ForceCurve& curve) {
+  const WayIn way = findWayIn(curve.time, withoutSpikes(curve.position));
+  curve.notes.insert(curve.notes.end(), way.notes.begin(), way.notes.end());
+  keep(curve, way.begin, way.end);
+}
+
+void cutAtPuncture(ForceCurve& curve) {
+  const auto crest = crestBeforePuncture(curve.position, curve.force);
+  if (!crest) return;
+  curve.notes.push_back("the force breaks down " + std::to_string(curve.size() - *crest - 1) +
+                        " samples before the end, as in a puncture: these are left out");
+  keep(curve, 0, *crest + 1);
+}
+
+/// Rows that the record itself calls none of the way in: of another segment, or behind a puncture.
+class OtherRows {
+ public:
+  explicit OtherRows(const TextTable& table) {
+    for (const TextTable::Column& column : table.columns) {
+      const std::string title = lower(column.title);
+      if (title == "segment" && !column.texts.empty()) segments_ = &column.texts;
+      if (title == "punctured" || title == "layers_punctured") punctured_ = &column.values;
+    }
+    if (!segments_) return;
+    has_approach_ = std::any_of(segments_->begin(), segments_->end(), isApproach);
+  }
+
+  bool has(std::size_t row) {
+    if (segments_ && has_approach_ && !isApproach((*segments_)[row])) return ++of_segments_ > 0;
+    is_behind_ = is_behind_ || (punctured_ && (*punctured_)[row] > 0);
+    return is_behind_ && ++behind_ > 0;
+  }
+  void tell(std::vector<std::string>& notes) const {
+    if (of_segments_ > 0) notes.push_back(std::to_string(of_segments_) + " rows of other segments than the approach are left out");
+    if (behind_ > 0) notes.push_back("the " + std::to_string(behind_) + " rows from the puncture on are left out");
+  }
+
+ private:
+  static std::string lower(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+    return text;
+  }
+  static bool isApproach(const std::string& segment) {
+    static const char* const kWords[] = {"approach", "extend", "extension", "trace", "loading", "load", "indent", "forward", "in"};
+    const std::string word = lower(segment);
+    return std::any_of(std::begin(kWords), std::end(kWords), [&](const char* each) { return word == each; });
+  }
+
+  const std::vector<std::string>* segments_ = nullptr;
+  const std::vector<double>* punctured_ = nullptr;
+  bool has_approach_ = false, is_behind_ = false;
+  std::size_t of_segments_ = 0, behind_ = 0;
+};
 
 }  // namespace
 
@@ -100,6 +172,8 @@ ForceCurve readForceCurve(const std::string& path, const ForceCurveConfig& confi
   };
   curve.timed = columns.count("time") > 0;
   std::vector<double> deflections;
+  std::vector<bool> of_way;
+  OtherRows others(table);
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const double height = valueOf("position", row, 0), force = valueOf("force", row, 0);
     const double deflection = valueOf("deflection", row, 0);
@@ -109,6 +183,7 @@ ForceCurve readForceCurve(const std::string& path, const ForceCurveConfig& confi
     curve.position.push_back(height);
     deflections.push_back(deflection);
     curve.force.push_back(force);
+    of_way.push_back(config.whole || !others.has(row));
   }
   const std::size_t dropped = table.rows() - curve.size();
   if (dropped > 0) curve.notes.push_back(std::to_string(dropped) + " rows without numbers are left out");
@@ -122,9 +197,14 @@ ForceCurve readForceCurve(const std::string& path, const ForceCurveConfig& confi
   const double sign = rise(curve, deflections) < 0 ? -1 : 1;
   for (std::size_t i = 0; i < curve.size(); ++i) curve.position[i] -= sign * deflections[i];
   curve.drag = dragOf(curve);
-  if (!config.whole) cutRetract(curve);
+  others.tell(curve.notes);
+  keepOnly(curve, of_way);
+  if (!config.whole) cutToWayIn(curve);
   if (curve.size() < kFewestSamples) throw ConfigError(path + ": has no way in: its first samples are its deepest");
   orientForce(curve);
+  if (!config.whole) cutAtPuncture(curve);
+  if (curve.size() < kFewestSamples)
+    throw ConfigError(path + ": has " + std::to_string(curve.size()) + " samples before the force breaks down: must be at least " + std::to_string(kFewestSamples));
   return curve;
 }
 

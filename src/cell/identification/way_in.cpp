@@ -1,0 +1,101 @@
+#include "cell/identification/way_in.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/median.h"
+
+namespace microinjection {
+namespace {
+
+constexpr double kTurn = 0.02;        ///< of the way: a smaller step back is noise, or a needle that trembles
+constexpr double kRests = 0.05;       ///< of the median speed of the way in, below which the tip rests
+constexpr double kFall = 0.25;        ///< of the force's range, that a puncture takes from it
+constexpr double kSudden = 0.05;      ///< of the way, within which a puncture does so
+constexpr double kNoise = 20;         ///< times the median step of the force: a smaller fall may be noise
+constexpr std::size_t kFewest = 4;    ///< samples of a hold
+constexpr std::size_t kWindows = 60;  ///< of the way in, whose speeds are compared
+
+std::vector<double> medians(const std::vector<double>& values, std::size_t beside) {
+  std::vector<double> result(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::size_t from = i < beside ? 0 : i - beside, to = std::min(values.size(), i + beside + 1);
+    result[i] = upperMedian({values.begin() + static_cast<std::ptrdiff_t>(from),
+                             values.begin() + static_cast<std::ptrdiff_t>(to)});
+  }
+  return result;
+}
+
+/// Where the last way down to `deepest` begins.
+std::size_t lastTurn(const std::vector<double>& path, std::size_t deepest, double tolerance) {
+  std::size_t turn = deepest;
+  for (std::size_t i = deepest; i-- > 0;) {
+    if (path[i] < path[turn]) turn = i;
+    if (path[i] > path[turn] + tolerance) break;
+  }
+  return turn;
+}
+
+/// The sample behind the last one in which the tip goes on. A hold lasts for some windows of samples.
+std::size_t endOfMotion(const std::vector<double>& time, const std::vector<double>& path, std::size_t begin,
+                        std::size_t end) {
+  const std::size_t window = std::max<std::size_t>(2, (end - begin) / kWindows);
+  std::vector<double> speeds;
+  for (std::size_t i = begin; i + window < end; ++i) {
+    const double dt = time[i + window] - time[i];
+    speeds.push_back(dt > 0 ? (path[i + window] - path[i]) / dt : 0);
+  }
+  if (speeds.empty()) return end;
+  const double fastest = *std::max_element(speeds.begin(), speeds.end());
+  std::vector<double> moving;
+  std::copy_if(speeds.begin(), speeds.end(), std::back_inserter(moving), [&](double v) { return v > kRests * fastest; });
+  const double slow = kRests * upperMedian(moving);
+  std::size_t last = speeds.size();
+  while (last > 0 && speeds[last - 1] < slow) --last;
+  const std::size_t rests_from = begin + last + (last < speeds.size() ? window / 2 : window);
+  return end - std::min(end, rests_from) < kFewest ? end : rests_from;
+}
+
+std::string samples(std::size_t count) { return std::to_string(count) + (count == 1 ? " sample" : " samples"); }
+
+}  // namespace
+
+WayIn findWayIn(const std::vector<double>& time, const std::vector<double>& position) {
+  WayIn way;
+  way.end = position.size();
+  if (position.size() < 2 * kFewest) return way;
+  const std::vector<double> path = medians(position, 2);
+  const auto [least, most] = std::minmax_element(path.begin(), path.end());  // of equal ones the last is the most
+  const auto deepest = static_cast<std::size_t>(most - path.begin());
+  if (deepest + 1 < way.end)
+    way.notes.push_back("the " + samples(way.end - deepest - 1) + " behind the deepest one are left out");
+  way.begin = lastTurn(path, deepest, kTurn * (*most - *least));
+  if (way.begin > 0) way.notes.push_back("the " + samples(way.begin) + " before the last turn are left out");
+  way.end = endOfMotion(time, path, way.begin, deepest + 1);
+  if (way.end <= deepest)
+    way.notes.push_back("the " + samples(deepest + 1 - way.end) +
+                        " of a hold are left out: the tip rests there, or creeps");
+  return way;
+}
+
+std::optional<std::size_t> crestBeforePuncture(const std::vector<double>& position, const std::vector<double>& force) {
+  if (force.size() < 2 * kFewest) return std::nullopt;
+  const std::vector<double> smooth = medians(force, 2);
+  const auto [least, most] = std::minmax_element(smooth.begin(), smooth.end());
+  const double fall = kFall * (*most - *least), sudden = kSudden * (position.back() - position.front());
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < smooth.size(); ++i) steps.push_back(std::abs(smooth[i] - smooth[i - 1]));
+  if (fall < kNoise * upperMedian(steps)) return std::nullopt;
+  const auto at = [&](std::size_t i) { return smooth.begin() + static_cast<std::ptrdiff_t>(i); };
+  std::size_t crest = 0;
+  for (std::size_t i = 1; i < smooth.size(); ++i) {
+    if (smooth[i] >= smooth[crest]) crest = i;
+    // A crest that is too far back: the highest of those behind it takes its place.
+    while (crest < i && position[i] - position[crest] > sudden)
+      crest = static_cast<std::size_t>(std::max_element(at(crest + 1), at(i + 1)) - smooth.begin());
+    if (smooth[crest] - smooth[i] > fall) return crest;
+  }
+  return std::nullopt;
+}
+
+}  // namespace microinjection
