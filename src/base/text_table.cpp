@@ -142,19 +142,17 @@ class TableReader {
   bool isSkipped(std::size_t i) const { return isBlank(lines_[i]) || commentIn(lines_[i]).has_value(); }
   Cells cellsOf(std::size_t i) const { return split(lines_[i], separator_); }
 
-  static int textsIn(const Cells& cells) {
-    return static_cast<int>(std::count_if(cells.begin(), cells.end(), [](const Cell& cell) {
-      return !cell.text.empty() && !mayBeNumber(cell.text);
-    }));
+  struct Count {
+    int numbers = 0, texts = 0;
+  };
+  static Count countIn(const Cells& cells) {
+    Count count;
+    for (const Cell& cell : cells) {
+      if (!cell.text.empty()) ++(mayBeNumber(cell.text) ? count.numbers : count.texts);
+    }
+    return count;
   }
-  /// Cells that may be numbers, less those that are texts; 0: no row of a table, which has two numbers at least.
-  static int numbersIn(const Cells& cells) {
-    const int filled = static_cast<int>(
-        std::count_if(cells.begin(), cells.end(), [](const Cell& cell) { return !cell.text.empty(); }));
-    const int texts = textsIn(cells);
-    return filled - texts >= 2 ? std::max(0, filled - 2 * texts) : 0;
-  }
-  static bool isRow(const Cells& cells) { return numbersIn(cells) > 0; }
+  static bool isRow(const Cells& cells) { return countIn(cells).numbers >= 2; }
 
   /// The separator and the number of cells with which there are the most numbers.
   void findRows() {
@@ -172,7 +170,9 @@ class TableReader {
         if (isSkipped(i)) continue;
         ++looked;
         const Cells cells = split(lines_[i], separator);
-        const int count = counts[separator][cells.size()] += numbersIn(cells);
+        const Count found = countIn(cells);
+        if (found.numbers < 2) continue;
+        const int count = counts[separator][cells.size()] += std::max(0, found.numbers - found.texts);
         if (count <= most) continue;
         most = count;
         width_ = cells.size();
@@ -183,20 +183,37 @@ class TableReader {
     first_ = firstRow();
     table_.first_line = first_ + 1;
   }
-  /// A preamble may have lines with as many cells: not with as few texts as most rows have.
+  /// A preamble may have lines that look like rows: the table's rows are the most behind one line of texts.
   std::size_t firstRow() const {
-    std::map<int, std::size_t> rows, firsts;  // by their texts
-    for (std::size_t i = said_separator_ ? 1 : 0, looked = 0; i < lines_.size() && looked < kLooked; ++i) {
+    std::size_t first = 0, rows = 0, most = 0, best = 0;  // first: behind the last line of texts
+    for (std::size_t i = said_separator_ ? 1 : 0; i < lines_.size(); ++i) {
       if (isSkipped(i)) continue;
-      ++looked;
       const Cells cells = cellsOf(i);
-      if (cells.size() != width_ || !isRow(cells)) continue;
-      firsts.emplace(textsIn(cells), i);
-      ++rows[textsIn(cells)];
+      if (cells.size() == width_ && isRow(cells)) {
+        if (++rows == 1) first = i;
+        if (rows > most) most = rows, best = first;
+      } else if (countIn(cells).numbers == 0) {
+        rows = 0;
+      }
+      if (most > kLooked) break;
     }
-    const auto most = std::max_element(rows.begin(), rows.end(),
-                                       [](const auto& a, const auto& b) { return a.second < b.second; });
-    return firsts.at(most->first);
+    // The same titles again are of a further part.
+    const std::size_t title = lineBefore(best);
+    for (std::size_t i = 0; title < best && i < title; ++i) {
+      if (lines_[i] == lines_[title]) return rowBehind(i);
+    }
+    return best;
+  }
+  /// The last line before a row that is not blank; the row itself when there is none.
+  std::size_t lineBefore(std::size_t row) const {
+    std::size_t i = row;
+    while (i > 0 && isBlank(lines_[i - 1])) --i;
+    return i > 0 ? i - 1 : row;
+  }
+  std::size_t rowBehind(std::size_t i) const {
+    do ++i;
+    while (isSkipped(i) || cellsOf(i).size() != width_ || !isRow(cellsOf(i)));
+    return i;
   }
   std::size_t firstText() const {
     std::size_t i = 0;

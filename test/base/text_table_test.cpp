@@ -182,6 +182,20 @@ TEST_F(TextTableTest, CellsThatAreNoNumbersAreNone) {
   EXPECT_EQ(table.columns[2].text, "approach");
 }
 
+TEST_F(TextTableTest, ColumnsOfTextsAndCellsThatAreEmptyAtFirst) {
+  std::string text = "time_s,phase,depth_m,force_N,state\n";
+  for (int i = 0; i < 100; ++i)
+    text += std::to_string(i) + (i < 40 ? ",approach,," : ",,1e-6,") + std::to_string(2 * i) + ",idle\n";
+  const TextTable table = read(text);
+  EXPECT_EQ(table.rows(), 100U);
+  EXPECT_EQ(table.title_line, 1U);
+  EXPECT_EQ(table.columns[2].numbers, 60U);
+  EXPECT_EQ(table.columns[1].texts[39], "approach");
+  EXPECT_EQ(table.columns[1].texts[40], "");
+  EXPECT_EQ(table.columns[4].texts[99], "idle");
+  EXPECT_TRUE(table.columns[3].texts.empty());
+}
+
 TEST_F(TextTableTest, PartsWithTheirOwnTitles) {
   const TextTable table = read(kTitles + rows() + "\n" + kTitles + rows());
   EXPECT_EQ(table.rows(), 40U);

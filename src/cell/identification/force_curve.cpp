@@ -119,6 +119,14 @@ void cutAtPuncture(ForceCurve& curve) {
   keep(curve, 0, *crest + 1);
 }
 
+void cutHeldForce(ForceCurve& curve) {
+  const std::size_t end = endOfLoading(curve.time, curve.force);
+  if (end == curve.size()) return;
+  curve.notes.push_back("the last " + std::to_string(curve.size() - end) +
+                        " samples are left out: the force is held, and the tip creeps");
+  keep(curve, 0, end);
+}
+
 /// Rows that the record itself calls none of the way in: of another segment, or behind a puncture.
 class OtherRows {
  public:
@@ -202,7 +210,10 @@ ForceCurve readForceCurve(const std::string& path, const ForceCurveConfig& confi
   if (!config.whole) cutToWayIn(curve);
   if (curve.size() < kFewestSamples) throw ConfigError(path + ": has no way in: its first samples are its deepest");
   orientForce(curve);
-  if (!config.whole) cutAtPuncture(curve);
+  if (!config.whole) {
+    cutAtPuncture(curve);
+    cutHeldForce(curve);
+  }
   if (curve.size() < kFewestSamples)
     throw ConfigError(path + ": has " + std::to_string(curve.size()) + " samples before the force breaks down: must be at least " + std::to_string(kFewestSamples));
   return curve;

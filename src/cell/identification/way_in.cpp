@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "base/median.h"
 
@@ -10,6 +11,8 @@ namespace {
 
 constexpr double kTurn = 0.02;        ///< of the way: a smaller step back is noise, or a needle that trembles
 constexpr double kRests = 0.05;       ///< of the median speed of the way in, below which the tip rests
+constexpr double kHeld = 0.05;        ///< of the median speed of a growing force, below which it is held
+constexpr std::size_t kBeside = 2;    ///< samples on either side of one, for a median
 constexpr double kFall = 0.25;        ///< of the force's range, that a puncture takes from it
 constexpr double kSudden = 0.05;      ///< of the way, within which a puncture does so
 constexpr double kNoise = 20;         ///< times the median step of the force: a smaller fall may be noise
@@ -36,24 +39,25 @@ std::size_t lastTurn(const std::vector<double>& path, std::size_t deepest, doubl
   return turn;
 }
 
-/// The sample behind the last one in which the tip goes on. A hold lasts for some windows of samples.
-std::size_t endOfMotion(const std::vector<double>& time, const std::vector<double>& path, std::size_t begin,
-                        std::size_t end) {
+/// The sample behind the last one in which a quantity grows: at the end it stands, or grows much more slowly than the
+/// median of where it grows. `share`: of that speed.
+std::size_t endOfGrowth(const std::vector<double>& time, const std::vector<double>& values, std::size_t begin,
+                        std::size_t end, double share) {
   const std::size_t window = std::max<std::size_t>(2, (end - begin) / kWindows);
   std::vector<double> speeds;
   for (std::size_t i = begin; i + window < end; ++i) {
     const double dt = time[i + window] - time[i];
-    speeds.push_back(dt > 0 ? (path[i + window] - path[i]) / dt : 0);
+    speeds.push_back(dt > 0 ? (values[i + window] - values[i]) / dt : 0);
   }
   if (speeds.empty()) return end;
   const double fastest = *std::max_element(speeds.begin(), speeds.end());
-  std::vector<double> moving;
-  std::copy_if(speeds.begin(), speeds.end(), std::back_inserter(moving), [&](double v) { return v > kRests * fastest; });
-  const double slow = kRests * upperMedian(moving);
+  std::vector<double> growing;
+  std::copy_if(speeds.begin(), speeds.end(), std::back_inserter(growing), [&](double v) { return v > share * fastest; });
+  const double slow = share * upperMedian(growing);
   std::size_t last = speeds.size();
   while (last > 0 && speeds[last - 1] < slow) --last;
-  const std::size_t rests_from = begin + last + (last < speeds.size() ? window / 2 : window);
-  return end - std::min(end, rests_from) < kFewest ? end : rests_from;
+  const std::size_t stands_from = begin + last + (last < speeds.size() ? window / 2 : window);
+  return end - std::min(end, stands_from) < std::max(kFewest, window) ? end : stands_from;
 }
 
 std::string samples(std::size_t count) { return std::to_string(count) + (count == 1 ? " sample" : " samples"); }
@@ -64,23 +68,32 @@ WayIn findWayIn(const std::vector<double>& time, const std::vector<double>& posi
   WayIn way;
   way.end = position.size();
   if (position.size() < 2 * kFewest) return way;
-  const std::vector<double> path = medians(position, 2);
+  const std::vector<double> path = medians(position, kBeside);
   const auto [least, most] = std::minmax_element(path.begin(), path.end());  // of equal ones the last is the most
   const auto deepest = static_cast<std::size_t>(most - path.begin());
   if (deepest + 1 < way.end)
     way.notes.push_back("the " + samples(way.end - deepest - 1) + " behind the deepest one are left out");
   way.begin = lastTurn(path, deepest, kTurn * (*most - *least));
   if (way.begin > 0) way.notes.push_back("the " + samples(way.begin) + " before the last turn are left out");
-  way.end = endOfMotion(time, path, way.begin, deepest + 1);
+  way.end = endOfGrowth(time, path, way.begin, deepest + 1, kRests);
   if (way.end <= deepest)
     way.notes.push_back("the " + samples(deepest + 1 - way.end) +
-                        " of a hold are left out: the tip rests there, or creeps");
+                        " of a hold are left out: the tip rests");
   return way;
+}
+
+std::size_t endOfLoading(const std::vector<double>& time, const std::vector<double>& force) {
+  if (force.size() < 2 * kFewest) return force.size();
+  const std::vector<double> smooth = medians(force, kBeside);
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < smooth.size(); ++i) steps.push_back(std::abs(smooth[i] - smooth[i - 1]));
+  if (smooth.back() - smooth.front() < kNoise * upperMedian(steps)) return force.size();
+  return endOfGrowth(time, smooth, 0, force.size(), kHeld);
 }
 
 std::optional<std::size_t> crestBeforePuncture(const std::vector<double>& position, const std::vector<double>& force) {
   if (force.size() < 2 * kFewest) return std::nullopt;
-  const std::vector<double> smooth = medians(force, 2);
+  const std::vector<double> smooth = medians(force, kBeside);
   const auto [least, most] = std::minmax_element(smooth.begin(), smooth.end());
   const double fall = kFall * (*most - *least), sudden = kSudden * (position.back() - position.front());
   std::vector<double> steps;
