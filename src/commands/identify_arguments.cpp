@@ -127,7 +127,13 @@ std::optional<IdentifyArguments> parseIdentifyArguments(int argc, char** argv) {
       "number of relaxation times to find");
   add("drift", po::value(&drift)->default_value("auto"), "of the sensor: auto, on or off");
   add("column", po::value(&columns), "QUANTITY=NAME:UNIT; QUANTITY time, position, deflection or force");
-  add("whole", po::bool_switch(&arguments.curve.whole), "use what follows the deepest sample, too");
+  add("position-of", po::value(&arguments.curve.position_of)->default_value("auto"),
+      "whose the position is: tip, base of a lever that bends, or auto: by the column's name");
+  add("spring-constant", po::value(&arguments.curve.spring_constant), "N/m, of the lever, where the record has no deflection");
+  add("from", po::value(&arguments.curve.from), "first row that is used, as 120, or time, as 1.5s");
+  add("to", po::value(&arguments.curve.to), "last one");
+  add("segment", po::value(&arguments.curve.segment), "text of the column segment that is used; default: the approach");
+  add("whole", po::bool_switch(&arguments.curve.whole), "use what is no way in, too");
   add("tip-radius", po::value(&arguments.geometry.tip_radius), "m, of the tip for hertz");
   add("half-angle", po::value(&arguments.geometry.half_angle), "rad, of the cone");
   add("poisson-ratio", po::value(&poisson_ratio), "of the formulas; default that of the scene, else 0.5");
@@ -152,12 +158,14 @@ std::optional<IdentifyArguments> parseIdentifyArguments(int argc, char** argv) {
     if (!arguments.residuals.empty()) throw ConfigError("--residuals: needs --record");
     arguments.point = parsePoint(point, reading_error, depth_error);
   }
-  for (const char* option : {"tip-radius", "half-angle"}) {
+  for (const char* option : {"tip-radius", "half-angle", "spring-constant"}) {
     if (values.count(option) != 0) requirePositive(option, values[option].as<double>());
   }
   if (values.count("poisson-ratio") != 0 && !(poisson_ratio > -1 && poisson_ratio <= 0.5)) {
     throw ConfigError("--poisson-ratio = " + std::to_string(poisson_ratio) + ": must be in (-1, 0.5]");
   }
+  if (const std::string& of = arguments.curve.position_of; of != "auto" && of != "tip" && of != "base")
+    throw ConfigError("--position-of = " + of + ": must be tip, base or auto");
   if (arguments.identification.prony_terms < 0 || arguments.identification.prony_terms > 3) {
     throw ConfigError("--prony = " + std::to_string(arguments.identification.prony_terms) + ": must be 0 to 3");
   }

@@ -82,11 +82,11 @@ std::optional<ForceColumn> search(const Quantity& quantity, const TextTable& tab
   const std::vector<std::string> titles = table.titles();
   for (const std::string& name : quantity.names) {
     for (std::size_t i = 0; i < titles.size(); ++i) {
-      if (table.columns[i].clock && quantity.name == "time") return ForceColumn{i, 1};
+      if (table.columns[i].clock && quantity.name == "time") return ForceColumn{i, 1, name};
       auto [own, unit] = split(titles[i]);
       if (lower(titles[i]) == name) own = name, unit.clear();
       if (!isNamed(own, name)) continue;
-      if (!unit.empty()) return ForceColumn{i, unitOf(quantity, unit, table.path + ": column '" + titles[i] + "'")};
+      if (!unit.empty()) return ForceColumn{i, unitOf(quantity, unit, table.path + ": column '" + titles[i] + "'"), name};
       throw ConfigError(table.path + ": column '" + titles[i] + "': has no unit; give --column " + quantity.name +
                         "=" + titles[i] + ":UNIT, UNIT one of " + allowed(quantity));
     }
@@ -131,7 +131,7 @@ std::map<std::string, ForceColumn> findForceColumns(const TextTable& table,
       const std::size_t colon = named->second.rfind(':');
       if (colon == std::string::npos) throw ConfigError(where + ": must be NAME:UNIT");
       found = ForceColumn{indexOf(named->second.substr(0, colon), table.titles(), where),
-                          unitOf(quantity, named->second.substr(colon + 1), where)};
+                          unitOf(quantity, named->second.substr(colon + 1), where), ""};
     }
     if (!found) continue;
     if (hasNumbers(table, quantity.name, *found)) {

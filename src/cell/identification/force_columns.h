@@ -12,6 +12,7 @@ namespace microinjection {
 struct ForceColumn {
   std::size_t index = 0;
   double unit = 1;
+  std::string name;  ///< by which it was found, as "height"; empty: the user named it
 };
 
 /// Columns of time, position, deflection and force by the table's titles; see readForceCurve.

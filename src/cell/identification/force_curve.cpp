@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <numeric>
 
 #include "base/errors.h"
 #include "base/median.h"
+#include "base/parse_number.h"
 #include "base/text_table.h"
 #include "cell/identification/drag.h"
 #include "cell/identification/force_columns.h"
@@ -127,26 +129,70 @@ void cutHeldForce(ForceCurve& curve) {
   keep(curve, 0, end);
 }
 
-/// Rows that the record itself calls none of the way in: of another segment, or behind a puncture.
+/// Whether the position is that of a lever's base. Throws ConfigError where it cannot be known.
+bool isOfBase(const TextTable& table, const ForceColumn& position, bool has_deflection, const ForceCurveConfig& config,
+              std::vector<std::string>& notes) {
+  if (config.position_of == "tip" || config.position_of == "base") return config.position_of == "base";
+  const std::string column = "column '" + table.titles()[position.index] + "'";
+  const auto is_any = [&](std::initializer_list<const char*> names) {
+    return std::any_of(names.begin(), names.end(), [&](const char* name) { return position.name == name; });
+  };
+  const bool bends = has_deflection || config.spring_constant > 0;
+  if (is_any({"tip", "tip_z", "depth", "indentation"})) {
+    if (bends) notes.push_back(column + " is the tip's: no deflection is taken off it (--position-of base takes it off)");
+    return false;
+  }
+  if (is_any({"height", "z"})) {
+    if (!bends)
+      notes.push_back(column + " is taken for the tip's position; if it is that of a lever's base, give --spring-constant");
+    return true;
+  }
+  if (bends)
+    throw ConfigError(table.path + ": " + column +
+                      ": is it the tip's, or that of the lever's base, off which the deflection is taken? Give "
+                      "--position-of tip or --position-of base");
+  return false;
+}
+
+/// A row from 1, or a time in s.
+bool isWithin(const std::string& option, const std::string& limit, std::size_t row, double time, bool from) {
+  const bool is_time = !limit.empty() && limit.back() == 's';
+  const auto value = parseNumber<double>(is_time ? limit.substr(0, limit.size() - 1) : limit);
+  if (!value || !std::isfinite(*value) || (!is_time && (*value < 1 || *value != std::floor(*value))))
+    throw ConfigError(option + " = " + limit + ": must be a row from 1, as 120, or a time, as 1.5s");
+  const double at = is_time ? time : static_cast<double>(row + 1);
+  return from ? at >= *value : at <= *value;
+}
+
+/// Rows that are none of the way in by the record's own words, or the user's: of another segment, outside of what is
+/// asked for, behind a puncture.
 class OtherRows {
  public:
-  explicit OtherRows(const TextTable& table) {
+  OtherRows(const TextTable& table, const ForceCurveConfig& config) : config_(config) {
     for (const TextTable::Column& column : table.columns) {
       const std::string title = lower(column.title);
       if (title == "segment" && !column.texts.empty()) segments_ = &column.texts;
       if (title == "punctured" || title == "layers_punctured") punctured_ = &column.values;
     }
     if (!segments_) return;
-    has_approach_ = std::any_of(segments_->begin(), segments_->end(), isApproach);
+    const auto used = [this](const std::string& segment) { return isUsed(segment); };
+    has_used_ = std::any_of(segments_->begin(), segments_->end(), used);
+    if (!has_used_ && !config.segment.empty())
+      throw ConfigError(table.path + ": --segment = " + config.segment + ": the column 'segment' has no such text");
   }
 
-  bool has(std::size_t row) {
-    if (segments_ && has_approach_ && !isApproach((*segments_)[row])) return ++of_segments_ > 0;
+  bool has(std::size_t row, double time) {
+    if (!config_.from.empty() && !isWithin("--from", config_.from, row, time, true)) return ++outside_ > 0;
+    if (!config_.to.empty() && !isWithin("--to", config_.to, row, time, false)) return ++outside_ > 0;
+    if (config_.whole) return false;
+    if (segments_ && has_used_ && !isUsed((*segments_)[row])) return ++of_segments_ > 0;
     is_behind_ = is_behind_ || (punctured_ && (*punctured_)[row] > 0);
     return is_behind_ && ++behind_ > 0;
   }
   void tell(std::vector<std::string>& notes) const {
-    if (of_segments_ > 0) notes.push_back(std::to_string(of_segments_) + " rows of other segments than the approach are left out");
+    if (outside_ > 0) notes.push_back(std::to_string(outside_) + " rows outside of --from and --to are left out");
+    if (of_segments_ > 0) notes.push_back(std::to_string(of_segments_) + " rows of other segments than " +
+                                          (config_.segment.empty() ? "the approach" : config_.segment) + " are left out");
     if (behind_ > 0) notes.push_back("the " + std::to_string(behind_) + " rows from the puncture on are left out");
   }
 
@@ -155,7 +201,8 @@ class OtherRows {
     std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
     return text;
   }
-  static bool isApproach(const std::string& segment) {
+  bool isUsed(const std::string& segment) const {
+    if (!config_.segment.empty()) return segment == config_.segment;
     static const char* const kWords[] = {"approach", "extend", "extension", "trace", "loading", "load", "indent", "forward", "in"};
     const std::string word = lower(segment);
     return std::any_of(std::begin(kWords), std::end(kWords), [&](const char* each) { return word == each; });
@@ -163,8 +210,9 @@ class OtherRows {
 
   const std::vector<std::string>* segments_ = nullptr;
   const std::vector<double>* punctured_ = nullptr;
-  bool has_approach_ = false, is_behind_ = false;
-  std::size_t of_segments_ = 0, behind_ = 0;
+  ForceCurveConfig config_;
+  bool has_used_ = false, is_behind_ = false;
+  std::size_t outside_ = 0, of_segments_ = 0, behind_ = 0;
 };
 
 }  // namespace
@@ -181,17 +229,20 @@ ForceCurve readForceCurve(const std::string& path, const ForceCurveConfig& confi
   curve.timed = columns.count("time") > 0;
   std::vector<double> deflections;
   std::vector<bool> of_way;
-  OtherRows others(table);
+  OtherRows others(table, config);
+  const bool has_deflection = columns.count("deflection") > 0;
+  const bool of_base = isOfBase(table, columns.at("position"), has_deflection, config, curve.notes);
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const double height = valueOf("position", row, 0), force = valueOf("force", row, 0);
-    const double deflection = valueOf("deflection", row, 0);
+    const double bent = has_deflection || config.spring_constant == 0 ? 0 : force / config.spring_constant;
+    const double deflection = of_base ? valueOf("deflection", row, bent) : 0;
     const double time = valueOf("time", row, static_cast<double>(curve.size()));
     if (!std::isfinite(height + force + deflection + time)) continue;
     curve.time.push_back(time);
     curve.position.push_back(height);
     deflections.push_back(deflection);
     curve.force.push_back(force);
-    of_way.push_back(config.whole || !others.has(row));
+    of_way.push_back(!others.has(row, time));
   }
   const std::size_t dropped = table.rows() - curve.size();
   if (dropped > 0) curve.notes.push_back(std::to_string(dropped) + " rows without numbers are left out");

@@ -25,12 +25,18 @@ struct ForceCurveConfig {
   /// Column (name or number from 1) and unit of time, position, deflection and force, as "name:unit".
   /// What is not named is searched by its name; see readForceCurve.
   std::map<std::string, std::string> columns;
-  bool whole = false;  ///< also what follows the deepest point
+  /// Whose the position is: tip, base (of a lever that bends), or auto: by the column's name.
+  std::string position_of = "auto";
+  double spring_constant = 0;  ///< N/m, of the lever, for the deflection of a base; 0: not known
+  std::string from, to;        ///< first and last row (12, from 1) or time (1.5s) that is used; empty: the ends
+  std::string segment;         ///< of the column `segment`, that is used; empty: the approach
+  bool whole = false;          ///< also what is no way in
 };
 
 /// Reads columns of a table (base/text_table.h) by their names. Names begin with time or t; position, tip, depth, indentation, height or z;
-/// deflection; force or f, and end with the unit: force_nN, "height (um)", z[m], "time / s". With a deflection,
-/// the tip's position is height minus deflection. Rows without a number are left out; sign and
+/// deflection; force or f, and end with the unit: force_nN, "height (um)", z[m], "time / s". The position of a lever's
+/// base (height, z) is made that of the tip by the deflection, which is a column or the force over the spring
+/// constant; from a tip, depth or indentation nothing is taken off. Rows without a number are left out; sign and
 /// direction are found from the record, because laboratories differ in them. Throws ConfigError that
 /// names file, column and what is allowed.
 ForceCurve readForceCurve(const std::string& path, const ForceCurveConfig& config);
