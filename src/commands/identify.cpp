@@ -23,7 +23,7 @@
 namespace microinjection {
 namespace {
 
-constexpr int kFits = 0, kInconsistent = 4;
+constexpr int kFits = 0, kInconsistent = 4, kUndetermined = 5;
 
 /// Geometry of the scene, with what the options say.
 FormulaGeometry geometryOf(const std::optional<Scene>& scene, const FormulaGeometry& given) {
@@ -53,6 +53,15 @@ double depthOf(const ForceCurve& curve) {
   return guess.touched ? std::min(kMore * guess.depth, *high - *low) : *high - *low;
 }
 
+/// Says so when a value is not determined.
+bool isDetermined(const Identification& found) {
+  const Estimate* const open = found.undetermined();
+  if (!open) return true;
+  std::cerr << "identify: " << open->name << " = " << open->value << ' ' << open->unit << ", interval [" << open->low << ", "
+            << open->high << "]: the record does not determine it: no scene is written\n";
+  return false;
+}
+
 int fitPoint(const IdentifyArguments& arguments, const std::optional<Scene>& scene) {
   std::optional<Identification> first;
   std::string table = kEstimateColumns;
@@ -65,6 +74,7 @@ int fitPoint(const IdentifyArguments& arguments, const std::optional<Scene>& sce
   }
   flushStandardOutput();
   if (!arguments.csv.empty()) writeFileAtomically(arguments.csv, table);
+  if (!isDetermined(*first)) return kUndetermined;
   if (!arguments.out.empty()) {
     writeFileAtomically(arguments.out, identifiedScene(arguments.scene, "one point", *first));
   }
@@ -118,6 +128,7 @@ int run(int argc, char** argv) {
     std::cerr << "identify: " << arguments.models[0] << " does not follow the record: no scene is written\n";
     return kInconsistent;
   }
+  if (!isDetermined(first)) return kUndetermined;
   if (!arguments.out.empty()) {
     writeFileAtomically(arguments.out, identifiedScene(arguments.scene, arguments.record, first));
   }

@@ -44,7 +44,7 @@ Examples:
 
 Exit status: 0 the first model follows the record; 2 bad usage, or output that cannot be written; 3 the record holds no
 contact, or the fit fails; 4 the first model does not follow the record, or another cell follows it clearly better: do
-not use its values.
+not use its values; 5 the record does not determine a value: its interval is open or empty.
 
 Options)help";
 

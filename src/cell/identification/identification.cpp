@@ -22,6 +22,7 @@ constexpr double kTrimmed = 0.02;
 constexpr double kInseparable = 0.97;  ///< correlation of two unknowns
 constexpr double kLeastMisfit = 0.03;  ///< of the force: a smaller one is no reason to doubt a model
 constexpr double kSignificant = 3;     ///< misfit over what noise alone would leave
+constexpr std::size_t kEnoughInContact = 60;  ///< that are left of a long record
 constexpr std::size_t kFewestInContact = 24;
 constexpr int kBlocks = 12;  ///< of the part in contact, whose means are its smooth part
 
@@ -204,7 +205,29 @@ const Estimate* Identification::find(const std::string& name) const {
   return found == estimates.end() ? nullptr : &*found;
 }
 
-ForceCurve identifiedCurve(const ForceCurve& record) { return averaged(withoutFrozenReadings(record), kMostSamples); }
+const Estimate* Identification::undetermined() const {
+  const auto found = std::find_if(estimates.begin(), estimates.end(), [](const Estimate& x) {
+    const bool of_record = x.name == "offset" || x.name == "drift";
+    return !of_record && !(x.bounded && x.low < x.high && std::isfinite(x.high - x.low));
+  });
+  return found == estimates.end() ? nullptr : &*found;
+}
+
+ForceCurve identifiedCurve(const ForceCurve& record) {
+  ForceCurve curve = withoutFrozenReadings(record);
+  const ContactGuess guess = guessContact(curve, false);
+  if (curve.size() <= kMostSamples || !guess.touched) return averaged(curve, kMostSamples);
+  // A long approach must not cost the samples in contact: what is farthest from the cell goes first.
+  const auto inside = static_cast<std::size_t>(
+      std::count_if(curve.position.begin(), curve.position.end(), [&](double x) { return x > guess.contact; }));
+  const std::size_t block = std::max<std::size_t>(1, inside / kEnoughInContact);
+  if (curve.size() <= block * kMostSamples) return averaged(curve, kMostSamples);
+  const std::size_t far = curve.size() - block * kMostSamples;
+  for (std::vector<double>* values : {&curve.time, &curve.position, &curve.force})
+    values->erase(values->begin(), values->begin() + static_cast<std::ptrdiff_t>(far));
+  curve.notes.push_back("the " + std::to_string(far) + " samples farthest from the cell are left out");
+  return averaged(curve, kMostSamples);
+}
 
 Identification identify(const ForceCurve& curve, const std::shared_ptr<ElasticLaw>& law,
                         const IdentificationConfig& config) {

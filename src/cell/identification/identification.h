@@ -39,6 +39,9 @@ struct Identification {
   /// follows it clearly better.
   bool consistent() const;
   const Estimate* find(const std::string& name) const;
+  /// The first value of the cell whose interval is none: open, on the border of the search, or of no width; null: each
+  /// has one.
+  const Estimate* undetermined() const;
 };
 
 /// Bayesian information criterion of each (Schwarz 1978): the smallest is preferred, a difference of 10
