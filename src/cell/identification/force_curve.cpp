@@ -7,10 +7,10 @@
 
 #include "base/errors.h"
 #include "base/median.h"
-#include "base/parse_number.h"
 #include "base/text_table.h"
 #include "cell/identification/drag.h"
 #include "cell/identification/force_columns.h"
+#include "cell/identification/other_rows.h"
 #include "cell/identification/way_in.h"
 
 namespace microinjection {
@@ -20,28 +20,6 @@ constexpr std::size_t kFewestSamples = 20;  ///< samples
 constexpr double kNear = 0.15;              ///< of the way, to the end of a record
 constexpr double kClearly = 5;              ///< times the spread of the force at the other end
 constexpr double kBent = 0.1;               ///< of its rise: a straighter record is in contact from its begin
-
-/// Value at the deepest samples minus that of the straight line through those of the first half, which is
-/// a drift; for a straight record, its whole rise.
-double rise(const ForceCurve& curve, const std::vector<double>& values) {
-  std::vector<std::size_t> order(values.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return curve.position[a] < curve.position[b]; });
-  const std::size_t quarter = std::max<std::size_t>(2, order.size() / 4),
-                    few = std::max<std::size_t>(2, order.size() / 50);
-  const auto middle = [&](const std::vector<double>& of, std::size_t from, std::size_t count) {
-    std::vector<double> part;
-    for (std::size_t i = from; i < from + count; ++i) part.push_back(of[order[i]]);
-    return upperMedian(part);
-  };
-  const double x0 = middle(curve.position, 0, quarter), x1 = middle(curve.position, quarter, quarter),
-               x2 = middle(curve.position, order.size() - few, few);
-  const double y0 = middle(values, 0, quarter), y1 = middle(values, quarter, quarter),
-               y2 = middle(values, order.size() - few, few);
-  const double slope = x1 > x0 ? (y1 - y0) / (x1 - x0) : 0;
-  const double beyond = y2 - y0 - slope * (x2 - x0);
-  return std::abs(beyond) > kBent * std::abs(y2 - y0) ? beyond : y2 - y0;
-}
 
 /// The positions; one that is farther from its neighbours' median than any step is no place of the tip, and
 /// the median stands for it.
@@ -59,6 +37,29 @@ std::vector<double> withoutSpikes(const std::vector<double>& values) {
     if (std::abs(values[i] - medians[i]) <= kSpike * step) medians[i] = values[i];
   }
   return medians;
+}
+
+/// Value at the deepest samples minus that of the straight line through those of the first half, which is
+/// a drift; for a straight record, its whole rise.
+double rise(const ForceCurve& curve, const std::vector<double>& values) {
+  const std::vector<double> path = withoutSpikes(curve.position);
+  std::vector<std::size_t> order(values.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return path[a] < path[b]; });
+  const std::size_t quarter = std::max<std::size_t>(2, order.size() / 4),
+                    few = std::max<std::size_t>(2, order.size() / 50);
+  const auto middle = [&](const std::vector<double>& of, std::size_t from, std::size_t count) {
+    std::vector<double> part;
+    for (std::size_t i = from; i < from + count; ++i) part.push_back(of[order[i]]);
+    return upperMedian(part);
+  };
+  const double x0 = middle(path, 0, quarter), x1 = middle(path, quarter, quarter),
+               x2 = middle(path, order.size() - few, few);
+  const double y0 = middle(values, 0, quarter), y1 = middle(values, quarter, quarter),
+               y2 = middle(values, order.size() - few, few);
+  const double slope = x1 > x0 ? (y1 - y0) / (x1 - x0) : 0;
+  const double beyond = y2 - y0 - slope * (x2 - x0);
+  return std::abs(beyond) > kBent * std::abs(y2 - y0) ? beyond : y2 - y0;
 }
 
 /// The height grows towards the cell.
@@ -153,67 +154,6 @@ bool isOfBase(const TextTable& table, const ForceColumn& position, bool has_defl
                       "--position-of tip or --position-of base");
   return false;
 }
-
-/// A row from 1, or a time in s.
-bool isWithin(const std::string& option, const std::string& limit, std::size_t row, double time, bool from) {
-  const bool is_time = !limit.empty() && limit.back() == 's';
-  const auto value = parseNumber<double>(is_time ? limit.substr(0, limit.size() - 1) : limit);
-  if (!value || !std::isfinite(*value) || (!is_time && (*value < 1 || *value != std::floor(*value))))
-    throw ConfigError(option + " = " + limit + ": must be a row from 1, as 120, or a time, as 1.5s");
-  const double at = is_time ? time : static_cast<double>(row + 1);
-  return from ? at >= *value : at <= *value;
-}
-
-/// Rows that are none of the way in by the record's own words, or the user's: of another segment, outside of what is
-/// asked for, behind a puncture.
-class OtherRows {
- public:
-  OtherRows(const TextTable& table, const ForceCurveConfig& config) : config_(config) {
-    for (const TextTable::Column& column : table.columns) {
-      const std::string title = lower(column.title);
-      if (title == "segment" && !column.texts.empty()) segments_ = &column.texts;
-      if (title == "punctured" || title == "layers_punctured") punctured_ = &column.values;
-    }
-    if (!segments_) return;
-    const auto used = [this](const std::string& segment) { return isUsed(segment); };
-    has_used_ = std::any_of(segments_->begin(), segments_->end(), used);
-    if (!has_used_ && !config.segment.empty())
-      throw ConfigError(table.path + ": --segment = " + config.segment + ": the column 'segment' has no such text");
-  }
-
-  bool has(std::size_t row, double time) {
-    if (!config_.from.empty() && !isWithin("--from", config_.from, row, time, true)) return ++outside_ > 0;
-    if (!config_.to.empty() && !isWithin("--to", config_.to, row, time, false)) return ++outside_ > 0;
-    if (config_.whole) return false;
-    if (segments_ && has_used_ && !isUsed((*segments_)[row])) return ++of_segments_ > 0;
-    is_behind_ = is_behind_ || (punctured_ && (*punctured_)[row] > 0);
-    return is_behind_ && ++behind_ > 0;
-  }
-  void tell(std::vector<std::string>& notes) const {
-    if (outside_ > 0) notes.push_back(std::to_string(outside_) + " rows outside of --from and --to are left out");
-    if (of_segments_ > 0) notes.push_back(std::to_string(of_segments_) + " rows of other segments than " +
-                                          (config_.segment.empty() ? "the approach" : config_.segment) + " are left out");
-    if (behind_ > 0) notes.push_back("the " + std::to_string(behind_) + " rows from the puncture on are left out");
-  }
-
- private:
-  static std::string lower(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-    return text;
-  }
-  bool isUsed(const std::string& segment) const {
-    if (!config_.segment.empty()) return segment == config_.segment;
-    static const char* const kWords[] = {"approach", "extend", "extension", "trace", "loading", "load", "indent", "forward", "in"};
-    const std::string word = lower(segment);
-    return std::any_of(std::begin(kWords), std::end(kWords), [&](const char* each) { return word == each; });
-  }
-
-  const std::vector<std::string>* segments_ = nullptr;
-  const std::vector<double>* punctured_ = nullptr;
-  ForceCurveConfig config_;
-  bool has_used_ = false, is_behind_ = false;
-  std::size_t outside_ = 0, of_segments_ = 0, behind_ = 0;
-};
 
 }  // namespace
 

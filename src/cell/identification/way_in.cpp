@@ -29,6 +29,16 @@ std::vector<double> medians(const std::vector<double>& values, std::size_t besid
   return result;
 }
 
+/// A median knows the deepest sample to some neighbours only. Of equally deep ones the last, when they are a hold.
+std::size_t deepestSample(const std::vector<double>& position, std::size_t about) {
+  std::size_t first = about < 2 * kBeside ? 0 : about - 2 * kBeside, last = first;
+  for (std::size_t i = first; i < std::min(position.size(), about + 2 * kBeside + 1); ++i) {
+    if (position[i] > position[last]) first = i;
+    if (position[i] >= position[last]) last = i;
+  }
+  return last - first + 1 < kFewest ? first : last;
+}
+
 /// Where the last way down to `deepest` begins.
 std::size_t lastTurn(const std::vector<double>& path, std::size_t deepest, double tolerance) {
   std::size_t turn = deepest;
@@ -70,7 +80,7 @@ WayIn findWayIn(const std::vector<double>& time, const std::vector<double>& posi
   if (position.size() < 2 * kFewest) return way;
   const std::vector<double> path = medians(position, kBeside);
   const auto [least, most] = std::minmax_element(path.begin(), path.end());  // of equal ones the last is the most
-  const auto deepest = static_cast<std::size_t>(most - path.begin());
+  const std::size_t deepest = deepestSample(position, static_cast<std::size_t>(most - path.begin()));
   if (deepest + 1 < way.end)
     way.notes.push_back("the " + samples(way.end - deepest - 1) + " behind the deepest one are left out");
   way.begin = lastTurn(path, deepest, kTurn * (*most - *least));

@@ -1,5 +1,6 @@
 #include "cell/identification/force_curve.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -37,6 +38,11 @@ class ForceCurveFile : public testing::Test {
   const std::string path_ = testing::TempDir() + "microinjection_force_curve.csv";
 };
 
+bool hasNote(const ForceCurve& curve, const std::string& part) {
+  return std::any_of(curve.notes.begin(), curve.notes.end(),
+                     [&](const std::string& note) { return note.find(part) != std::string::npos; });
+}
+
 std::string text(double x) { return std::to_string(x); }
 
 TEST_F(ForceCurveFile, ReadsTheRecordOfASession) {
@@ -57,7 +63,7 @@ TEST_F(ForceCurveFile, FindsNamesAndUnits) {
   EXPECT_NEAR(curve.time[50], 0.05, 1e-12);
   EXPECT_NEAR(curve.position[50], 5e-6, 1e-15);
   EXPECT_NEAR(curve.force[50], 100e-9, 1e-18);
-  EXPECT_EQ(curve.notes.size(), 1u);
+  EXPECT_TRUE(hasNote(curve, "column 'Height [um]' is taken for the tip's position"));
 }
 
 TEST_F(ForceCurveFile, KeepsTheWayBackWhenAsked) {
@@ -79,7 +85,7 @@ TEST_F(ForceCurveFile, ASinglePositionFarOffIsNotTheDeepestOne) {
     write("time_s,height_m,force_N",
           [&](int i) { return text(i) + "," + text(i == 20 ? far : 1.0 * i) + "," + text(0.5 * i); });
     const ForceCurve curve = readForceCurve(path_, {});
-    EXPECT_EQ(curve.size(), 100u);
+    EXPECT_EQ(curve.size(), 100u) << testing::PrintToString(curve.notes);
     EXPECT_DOUBLE_EQ(curve.position[90], 90);
   }
 }
@@ -96,7 +102,7 @@ TEST_F(ForceCurveFile, LeavesOutRowsWithoutNumbers) {
   });
   const ForceCurve curve = readForceCurve(path_, {});
   EXPECT_EQ(curve.size(), 97u);
-  EXPECT_NE(curve.notes.front().find("3 rows without numbers"), std::string::npos);
+  EXPECT_TRUE(hasNote(curve, "3 rows without numbers"));
 }
 
 TEST_F(ForceCurveFile, TakesColumnsByNameOrNumber) {
@@ -124,7 +130,7 @@ TEST_F(ForceCurveFile, NamesWhatIsWrong) {
   config.columns = {{"force", "a:N"}};
   EXPECT_NE(errorOf(config).find("the file has no column 'a'"), std::string::npos);
   std::ofstream(path_) << "time_s,height_m,force_N\n1,2,3\n";
-  EXPECT_NE(errorOf().find("1 rows of numbers: must be at least 20"), std::string::npos) << errorOf();
+  EXPECT_NE(errorOf().find("1 rows have a number in each column that is used, 0 have not: must be at least 20"), std::string::npos) << errorOf();
   std::remove(path_.c_str());
   EXPECT_NE(errorOf().find("cannot be read"), std::string::npos);
 }

@@ -56,7 +56,8 @@ TEST_P(RigHoldTest, PausesTheInjectionAndNothingLeapsAfterIt) {
   chain_.session.run(3);
   EXPECT_LT((chain_.needle() - held).norm(), 0.1e-6) << "nothing moves before a word to the controller";
   EXPECT_LT(chain_.cell().indentation, 6e-6);
-  EXPECT_EQ(chain_.injector().volume, 0);
+  EXPECT_EQ(chain_.injector().pulses, 0u);
+  EXPECT_FALSE(chain_.injector().busy);
   EXPECT_EQ(controllerState(), "PAUSED");
   chain_.say("withdraw");
   EXPECT_TRUE(chain_.session.until([&] { return chain_.status().state == "idle"; }, 30)) << chain_.status();
