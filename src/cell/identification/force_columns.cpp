@@ -86,9 +86,10 @@ std::optional<ForceColumn> search(const Quantity& quantity, const TextTable& tab
       auto [own, unit] = split(titles[i]);
       if (lower(titles[i]) == name) own = name, unit.clear();
       if (!isNamed(own, name)) continue;
-      if (!unit.empty()) return ForceColumn{i, unitOf(quantity, unit, table.path + ": column '" + titles[i] + "'"), name};
-      throw ConfigError(table.path + ": column '" + titles[i] + "': has no unit; give --column " + quantity.name +
-                        "=" + titles[i] + ":UNIT, UNIT one of " + allowed(quantity));
+      if (!unit.empty())
+        return ForceColumn{i, unitOf(quantity, unit, table.path + ": column '" + titles[i] + "'"), name};
+      throw ConfigError(table.path + ": column '" + titles[i] + "': has no unit; give --column " + quantity.name + "=" +
+                        titles[i] + ":UNIT, UNIT one of " + allowed(quantity));
     }
   }
   return std::nullopt;
@@ -137,8 +138,10 @@ std::map<std::string, ForceColumn> findForceColumns(const TextTable& table,
     if (hasNumbers(table, quantity.name, *found)) {
       columns[quantity.name] = *found;
     } else {
+      const std::string& text = table.columns[found->index].text;
       notes.push_back("column '" + table.titles()[found->index] + "', the " + quantity.name +
-                      ", has no numbers and is left out");
+                      ", has no numbers" +
+                      (text.empty() ? "" : ", but '" + text + "',") + " and is left out");
     }
   }
   for (const auto& [name, column] : given) {
@@ -148,10 +151,10 @@ std::map<std::string, ForceColumn> findForceColumns(const TextTable& table,
   }
   for (const char* name : {"position", "force"}) {
     if (columns.count(name) > 0) continue;
-    const std::string titled =
-        table.title_line > 0 ? "line " + std::to_string(table.title_line) + " has the columns " + shown(table)
-                             : "it has no titles before line " + std::to_string(table.first_line) + ", and " +
-                                   std::to_string(table.columns.size()) + " columns";
+    const std::string titled = table.title_line > 0
+                                   ? "line " + std::to_string(table.title_line) + " has the columns " + shown(table)
+                                   : "it has no titles before line " + std::to_string(table.first_line) + ", and " +
+                                         std::to_string(table.columns.size()) + " columns";
     throw ConfigError(table.path + ": has no column of the " + name + ": " + titled + "; name one with --column " +
                       name + "=NAME:UNIT, NAME a title or a number from 1");
   }

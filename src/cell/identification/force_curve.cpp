@@ -133,19 +133,24 @@ void cutHeldForce(ForceCurve& curve) {
 /// Whether the position is that of a lever's base. Throws ConfigError where it cannot be known.
 bool isOfBase(const TextTable& table, const ForceColumn& position, bool has_deflection, const ForceCurveConfig& config,
               std::vector<std::string>& notes) {
-  if (config.position_of == "tip" || config.position_of == "base") return config.position_of == "base";
   const std::string column = "column '" + table.titles()[position.index] + "'";
   const auto is_any = [&](std::initializer_list<const char*> names) {
     return std::any_of(names.begin(), names.end(), [&](const char* name) { return position.name == name; });
   };
   const bool bends = has_deflection || config.spring_constant > 0;
+  if (config.position_of == "base" && !bends)
+    throw ConfigError(table.path + ": " + column +
+                      " is that of the lever's base: --position-of base needs a column of the deflection, or --spring-constant");
+  if (config.position_of != "auto") return config.position_of == "base";
   if (is_any({"tip", "tip_z", "depth", "indentation"})) {
-    if (bends) notes.push_back(column + " is the tip's: no deflection is taken off it (--position-of base takes it off)");
+    if (bends)
+      notes.push_back(column + " is the tip's: no deflection is taken off it (--position-of base takes it off)");
     return false;
   }
   if (is_any({"height", "z"})) {
     if (!bends)
-      notes.push_back(column + " is taken for the tip's position; if it is that of a lever's base, give --spring-constant");
+      notes.push_back(column +
+                      " is taken for the tip's position; if it is that of a lever's base, give --spring-constant");
     return true;
   }
   if (bends)
@@ -185,7 +190,14 @@ ForceCurve readForceCurve(const std::string& path, const ForceCurveConfig& confi
     of_way.push_back(!others.has(row, time));
   }
   const std::size_t dropped = table.rows() - curve.size();
-  if (dropped > 0) curve.notes.push_back(std::to_string(dropped) + " rows without numbers are left out");
+  if (dropped > 0) {
+    std::string text;
+    for (const auto& [quantity, column] : columns) {
+      const TextTable::Column& found = table.columns[column.index];
+      if (!found.text.empty()) text = ", as that with '" + found.text + "' in line " + std::to_string(found.text_line);
+    }
+    curve.notes.push_back(std::to_string(dropped) + " rows without numbers are left out" + text);
+  }
   if (curve.size() < kFewestSamples) {
     throw ConfigError(path + ": " + std::to_string(curve.size()) + " rows have a number in each column that is used, " +
                       std::to_string(dropped) + " have not: must be at least " + std::to_string(kFewestSamples));
@@ -206,7 +218,8 @@ ForceCurve readForceCurve(const std::string& path, const ForceCurveConfig& confi
     cutHeldForce(curve);
   }
   if (curve.size() < kFewestSamples)
-    throw ConfigError(path + ": has " + std::to_string(curve.size()) + " samples before the force breaks down: must be at least " + std::to_string(kFewestSamples));
+    throw ConfigError(path + ": has " + std::to_string(curve.size()) +
+                      " samples before the force breaks down: must be at least " + std::to_string(kFewestSamples));
   return curve;
 }
 

@@ -33,12 +33,12 @@ struct ForceCurveConfig {
   bool whole = false;          ///< also what is no way in
 };
 
-/// Reads columns of a table (base/text_table.h) by their names. Names begin with time or t; position, tip, depth, indentation, height or z;
-/// deflection; force or f, and end with the unit: force_nN, "height (um)", z[m], "time / s". The position of a lever's
-/// base (height, z) is made that of the tip by the deflection, which is a column or the force over the spring
-/// constant; from a tip, depth or indentation nothing is taken off. Rows without a number are left out; sign and
-/// direction are found from the record, because laboratories differ in them. Throws ConfigError that
-/// names file, column and what is allowed.
+/// Reads columns of a table (base/text_table.h) by their names. Names begin with time or t; position, tip, depth,
+/// indentation, height or z; deflection; force or f, and end with the unit: force_nN, "height (um)", z[m], "time / s".
+/// The position of a lever's base (height, z) is made that of the tip by the deflection, which is a column or the force
+/// over the spring constant; from a tip, depth or indentation nothing is taken off. Rows without a number are left out;
+/// sign and direction are found from the record, because laboratories differ in them. Throws ConfigError that names
+/// file, column and what is allowed.
 ForceCurve readForceCurve(const std::string& path, const ForceCurveConfig& config);
 
 /// Means of neighbouring samples, so that at most `count` are left.

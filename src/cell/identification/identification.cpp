@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "base/errors.h"
@@ -19,11 +20,12 @@ namespace {
 constexpr std::size_t kMostSamples = 2000;
 constexpr double kDeviations95 = 1.96;
 constexpr double kTrimmed = 0.02;
-constexpr double kInseparable = 0.97;  ///< correlation of two unknowns
-constexpr double kLeastMisfit = 0.03;  ///< of the force: a smaller one is no reason to doubt a model
-constexpr double kSignificant = 3;     ///< misfit over what noise alone would leave
+constexpr double kInseparable = 0.97;         ///< correlation of two unknowns
+constexpr double kLeastMisfit = 0.03;         ///< of the force: a smaller one is no reason to doubt a model
+constexpr double kSignificant = 3;            ///< misfit over what noise alone would leave
 constexpr std::size_t kEnoughInContact = 60;  ///< that are left of a long record
 constexpr std::size_t kFewestInContact = 24;
+constexpr std::size_t kFewestSearched = 1000;  ///< samples at the end of a long record, in which a contact is looked for
 constexpr int kBlocks = 12;  ///< of the part in contact, whose means are its smooth part
 
 /// Deviation of a sample, from its neighbours: no model changes it. A converter's step adds its rounding.
@@ -193,6 +195,28 @@ Identification identifyWith(const ForceCurve& curve, const std::shared_ptr<Elast
   return result;
 }
 
+void leaveOutFirst(ForceCurve& curve, std::size_t count) {
+  for (std::vector<double>* values : {&curve.time, &curve.position, &curve.force})
+    values->erase(values->begin(), values->begin() + static_cast<std::ptrdiff_t>(count));
+}
+
+/// By a first estimate, with and without a drift. A contact at the end of a very long way is lost in the means of such an
+/// estimate: it is then looked for in the last half, the last quarter and so on. None: there is no contact.
+std::optional<std::size_t> samplesInContact(ForceCurve curve) {
+  for (; curve.size() > kFewestSearched; leaveOutFirst(curve, curve.size() / 2)) {
+    std::optional<std::size_t> fewest;
+    for (const bool drift : {false, true}) {
+      const ContactGuess guess = guessContact(curve, drift);
+      if (!guess.touched) continue;
+      const auto inside = static_cast<std::size_t>(
+          std::count_if(curve.position.begin(), curve.position.end(), [&](double x) { return x > guess.contact; }));
+      fewest = std::min(fewest.value_or(inside), inside);
+    }
+    if (fewest) return fewest;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 bool Identification::consistent() const {
@@ -215,16 +239,13 @@ const Estimate* Identification::undetermined() const {
 
 ForceCurve identifiedCurve(const ForceCurve& record) {
   ForceCurve curve = withoutFrozenReadings(record);
-  const ContactGuess guess = guessContact(curve, false);
-  if (curve.size() <= kMostSamples || !guess.touched) return averaged(curve, kMostSamples);
+  if (curve.size() <= kMostSamples) return curve;
   // A long approach must not cost the samples in contact: what is farthest from the cell goes first.
-  const auto inside = static_cast<std::size_t>(
-      std::count_if(curve.position.begin(), curve.position.end(), [&](double x) { return x > guess.contact; }));
-  const std::size_t block = std::max<std::size_t>(1, inside / kEnoughInContact);
+  const std::optional<std::size_t> inside = samplesInContact(curve);
+  const std::size_t block = std::max<std::size_t>(1, inside.value_or(curve.size()) / kEnoughInContact);
   if (curve.size() <= block * kMostSamples) return averaged(curve, kMostSamples);
   const std::size_t far = curve.size() - block * kMostSamples;
-  for (std::vector<double>* values : {&curve.time, &curve.position, &curve.force})
-    values->erase(values->begin(), values->begin() + static_cast<std::ptrdiff_t>(far));
+  leaveOutFirst(curve, far);
   curve.notes.push_back("the " + std::to_string(far) + " samples farthest from the cell are left out");
   return averaged(curve, kMostSamples);
 }

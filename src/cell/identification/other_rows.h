@@ -25,7 +25,7 @@ class OtherRows {
  private:
   bool isUsed(const std::string& segment) const;
 
-  const std::vector<std::string>* segments_ = nullptr;
+  std::vector<std::string> segments_;  ///< one for each row; empty: there is no such column
   const std::vector<double>* punctured_ = nullptr;
   ForceCurveConfig config_;
   bool has_used_ = false, is_behind_ = false;

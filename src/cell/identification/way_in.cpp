@@ -13,7 +13,8 @@ constexpr double kTurn = 0.02;        ///< of the way: a smaller step back is no
 constexpr double kRests = 0.05;       ///< of the median speed of the way in, below which the tip rests
 constexpr double kHeld = 0.05;        ///< of the median speed of a growing force, below which it is held
 constexpr std::size_t kBeside = 2;    ///< samples on either side of one, for a median
-constexpr double kFall = 0.25;        ///< of the force's range, that a puncture takes from it
+constexpr double kFall = 0.25;        ///< of the force at its crest, that a puncture takes from it
+constexpr double kLeastFall = 0.1;    ///< of the force's range: a smaller fall is no puncture
 constexpr double kSudden = 0.05;      ///< of the way, within which a puncture does so
 constexpr double kNoise = 20;         ///< times the median step of the force: a smaller fall may be noise
 constexpr std::size_t kFewest = 4;    ///< samples of a hold
@@ -23,8 +24,8 @@ std::vector<double> medians(const std::vector<double>& values, std::size_t besid
   std::vector<double> result(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
     const std::size_t from = i < beside ? 0 : i - beside, to = std::min(values.size(), i + beside + 1);
-    result[i] = upperMedian({values.begin() + static_cast<std::ptrdiff_t>(from),
-                             values.begin() + static_cast<std::ptrdiff_t>(to)});
+    result[i] = upperMedian(
+        {values.begin() + static_cast<std::ptrdiff_t>(from), values.begin() + static_cast<std::ptrdiff_t>(to)});
   }
   return result;
 }
@@ -62,7 +63,8 @@ std::size_t endOfGrowth(const std::vector<double>& time, const std::vector<doubl
   if (speeds.empty()) return end;
   const double fastest = *std::max_element(speeds.begin(), speeds.end());
   std::vector<double> growing;
-  std::copy_if(speeds.begin(), speeds.end(), std::back_inserter(growing), [&](double v) { return v > share * fastest; });
+  std::copy_if(speeds.begin(), speeds.end(), std::back_inserter(growing),
+               [&](double v) { return v > share * fastest; });
   const double slow = share * upperMedian(growing);
   std::size_t last = speeds.size();
   while (last > 0 && speeds[last - 1] < slow) --last;
@@ -87,8 +89,7 @@ WayIn findWayIn(const std::vector<double>& time, const std::vector<double>& posi
   if (way.begin > 0) way.notes.push_back("the " + samples(way.begin) + " before the last turn are left out");
   way.end = endOfGrowth(time, path, way.begin, deepest + 1, kRests);
   if (way.end <= deepest)
-    way.notes.push_back("the " + samples(deepest + 1 - way.end) +
-                        " of a hold are left out: the tip rests");
+    way.notes.push_back("the " + samples(deepest + 1 - way.end) + " of a hold are left out: the tip rests");
   return way;
 }
 
@@ -105,18 +106,21 @@ std::optional<std::size_t> crestBeforePuncture(const std::vector<double>& positi
   if (force.size() < 2 * kFewest) return std::nullopt;
   const std::vector<double> smooth = medians(force, kBeside);
   const auto [least, most] = std::minmax_element(smooth.begin(), smooth.end());
-  const double fall = kFall * (*most - *least), sudden = kSudden * (position.back() - position.front());
+  const double range = *most - *least, sudden = kSudden * (position.back() - position.front());
   std::vector<double> steps;
   for (std::size_t i = 1; i < smooth.size(); ++i) steps.push_back(std::abs(smooth[i] - smooth[i - 1]));
-  if (fall < kNoise * upperMedian(steps)) return std::nullopt;
+  const double least_fall = std::max(kLeastFall * range, kNoise * upperMedian(steps));
+  if (least_fall > range) return std::nullopt;
   const auto at = [&](std::size_t i) { return smooth.begin() + static_cast<std::ptrdiff_t>(i); };
   std::size_t crest = 0;
+  double before = smooth[0];  // the least so far
   for (std::size_t i = 1; i < smooth.size(); ++i) {
     if (smooth[i] >= smooth[crest]) crest = i;
     // A crest that is too far back: the highest of those behind it takes its place.
     while (crest < i && position[i] - position[crest] > sudden)
       crest = static_cast<std::size_t>(std::max_element(at(crest + 1), at(i + 1)) - smooth.begin());
-    if (smooth[crest] - smooth[i] > fall) return crest;
+    before = std::min(before, smooth[i]);
+    if (smooth[crest] - smooth[i] > std::max(least_fall, kFall * (smooth[crest] - before))) return crest;
   }
   return std::nullopt;
 }

@@ -1,7 +1,7 @@
 #include "cell/identification/force_curve.h"
 
-#include <algorithm>
 #include <gtest/gtest.h>
+#include <algorithm>
 
 #include <cmath>
 #include <cstdio>
@@ -130,7 +130,9 @@ TEST_F(ForceCurveFile, NamesWhatIsWrong) {
   config.columns = {{"force", "a:N"}};
   EXPECT_NE(errorOf(config).find("the file has no column 'a'"), std::string::npos);
   std::ofstream(path_) << "time_s,height_m,force_N\n1,2,3\n";
-  EXPECT_NE(errorOf().find("1 rows have a number in each column that is used, 0 have not: must be at least 20"), std::string::npos) << errorOf();
+  EXPECT_NE(errorOf().find("1 rows have a number in each column that is used, 0 have not: must be at least 20"),
+            std::string::npos)
+      << errorOf();
   std::remove(path_.c_str());
   EXPECT_NE(errorOf().find("cannot be read"), std::string::npos);
 }

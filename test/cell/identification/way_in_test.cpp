@@ -65,7 +65,8 @@ TEST(WayIn, AHoldOfOneSampleIsNone) {
 TEST(EndOfLoading, IsWhereTheForceIsHeld) {
   const Path path({0, 5e-6});
   std::vector<double> force;
-  for (std::size_t i = 0; i < path.time.size(); ++i) force.push_back(1e-9 * static_cast<double>(std::min<std::size_t>(i, 350)));
+  for (std::size_t i = 0; i < path.time.size(); ++i)
+    force.push_back(1e-9 * static_cast<double>(std::min<std::size_t>(i, 350)));
   EXPECT_NEAR(static_cast<double>(endOfLoading(path.time, force)), 350, 10);
   std::iota(force.begin(), force.end(), 0.0);
   EXPECT_EQ(endOfLoading(path.time, force), force.size());
