@@ -73,7 +73,21 @@ bool hasThousands(const std::string& text, char separator, char sign) {
   return i == text.size() || text[i] == sign;
 }
 
+void replaceAll(std::string& text, const std::string& from, const std::string& to) {
+  for (std::size_t i = 0; (i = text.find(from, i)) != std::string::npos; i += to.size()) text.replace(i, from.size(), to);
+}
+
+/// With the minus sign of a keyboard; without the blanks and apostrophes between digits in threes.
+std::string asTyped(std::string text, char sign) {
+  if (text.find_first_not_of("0123456789.,+-eE") == std::string::npos) return text;
+  replaceAll(text, "\u2212", "-");
+  for (const char* mark : {" ", "\u00A0", "\u2009", "\u2019", "\u202F"}) replaceAll(text, mark, "'");
+  if (hasThousands(text, '\'', sign)) text.erase(std::remove(text.begin(), text.end(), '\''), text.end());
+  return text;
+}
+
 std::optional<double> numberIn(std::string text, char sign) {
+  text = asTyped(std::move(text), sign);
   const char other = sign == '.' ? ',' : '.';
   if (hasThousands(text, other, sign)) text.erase(std::remove(text.begin(), text.end(), other), text.end());
   if (text.find(other) != std::string::npos) return std::nullopt;
@@ -82,11 +96,17 @@ std::optional<double> numberIn(std::string text, char sign) {
   return parseNumber<double>(text);
 }
 
-/// s since midnight, or since 1970 with a date.
+/// s since midnight, or since 1970 with a date that begins with the year.
 std::optional<double> clockIn(const std::string& text) {
-  static const std::regex pattern(R"((?:(\d{4})-(\d{1,2})-(\d{1,2})[T ])?(\d{1,2}):(\d{2})(?::(\d{2}(?:[.,]\d+)?))?Z?)");
+  static const std::regex pattern(
+      R"((?:(?:(\d{4})-(\d{1,2})-(\d{1,2})|\d{1,4}[-./]\d{1,2}[-./]\d{1,4}),?[T ])?)"
+      R"((\d{1,2}):(\d{2})(?::(\d{2}(?:[.,]\d+)?))?(?: ?([AaPp])[Mm])?(?:Z|[+-]\d{2}:?\d{2})?)");
+  static const std::regex minutes(R"((\d{1,3}):(\d{2}[.,]\d+))");
   std::smatch match;
-  if (text.find(':') == std::string::npos || !std::regex_match(text, match, pattern)) return std::nullopt;
+  if (text.find(':') == std::string::npos) return std::nullopt;
+  if (std::regex_match(text, match, minutes))
+    return 60 * std::stoi(match[1].str()) + *numberIn(match[2].str(), match[2].str()[2]);
+  if (!std::regex_match(text, match, pattern)) return std::nullopt;
   const auto part = [&](int i) { return match[i].matched ? std::stoi(match[i].str()) : 0; };
   std::string seconds = match[6].matched ? match[6].str() : "0";
   std::replace(seconds.begin(), seconds.end(), ',', '.');
@@ -96,7 +116,9 @@ std::optional<double> clockIn(const std::string& text) {
     const int of_year = (153 * (part(2) + (part(2) > 2 ? -3 : 9)) + 2) / 5 + part(3) - 1;
     days = 146097.0 * era + 365.0 * of_era + of_era / 4 - of_era / 100 + of_year - 719468;
   }
-  return kDay * days + 3600 * part(4) + 60 * part(5) + parseNumber<double>(seconds).value_or(0);
+  const bool by_halves = match[7].matched, is_afternoon = by_halves && std::tolower(match[7].str()[0]) == 'p';
+  const int hour = by_halves ? part(4) % 12 + (is_afternoon ? 12 : 0) : part(4);
+  return kDay * days + 3600 * hour + 60 * part(5) + parseNumber<double>(seconds).value_or(0);
 }
 
 bool isMissing(const std::string& text) {
@@ -115,7 +137,8 @@ bool isBlank(const std::string& line) { return trimmed(line).empty(); }
 /// The text of a comment, without its sign.
 std::optional<std::string> commentIn(const std::string& line) {
   const std::string text = trimmed(line);
-  if (!text.empty() && (text[0] == '#' || text[0] == '%')) return trimmed(text.substr(text.find_first_not_of("#%", 0)));
+  if (!text.empty() && (text[0] == '#' || text[0] == '%'))
+    return trimmed(text.substr(std::min(text.find_first_not_of("#%"), text.size())));
   if (text.rfind("//", 0) == 0) return trimmed(text.substr(2));
   return std::nullopt;
 }
@@ -232,12 +255,14 @@ class TableReader {
   std::vector<std::string> titlesIn(const std::string& line) const {
     std::vector<std::string> titles;
     for (const Cell& cell : split(line, separator_)) {
+      std::string text = cell.text;
+      replaceAll(text, "\u00A0", " ");
       const bool goes_on = separator_ == ' ' && !titles.empty() && !cell.text.empty() &&
                            (cell.text[0] == '(' || cell.text[0] == '[' || cell.text[0] == '/' || titles.back().back() == '/');
       if (goes_on) {
-        titles.back() += " " + cell.text;
+        titles.back() += " " + text;
       } else {
-        titles.push_back(trimmed(cell.text));
+        titles.push_back(trimmed(text));
       }
     }
     if (titles.size() > width_ && titles.back().empty()) titles.pop_back();
@@ -250,10 +275,28 @@ class TableReader {
     return std::regex_match(text, pattern);
   }
 
+  /// Whether cells between commas are what is before and behind a decimal comma: 03518 is no number of its own.
+  bool hasHalvesOfNumbers() const {
+    bool found = false;
+    for (std::size_t i = first_; separator_ == ',' && i < lines_.size() && i < first_ + kLooked; ++i) {
+      if (isSkipped(i)) continue;
+      if (lines_[i].find('.') != std::string::npos) return false;
+      for (const Cell& cell : cellsOf(i)) {
+        const bool digits = cell.text.find_first_not_of("0123456789") == std::string::npos;
+        found = found || (digits && cell.text.size() > 1 && cell.text[0] == '0');
+      }
+    }
+    return found;
+  }
+  [[noreturn]] void failForTwoCommas(std::size_t index, const std::string& found) const {
+    fail(index, found + "a comma cannot be the separator and the decimal sign, but in quotes: '" + shown(lines_[first_]) +
+                    "'");
+  }
+
   void findTitles() {
     std::vector<std::size_t> above;  // the nearest first
     for (std::size_t i = first_; i-- > (said_separator_ ? 1 : 0);) {
-      if (isBlank(lines_[i])) continue;
+      if (isBlank(lines_[i]) || commentIn(lines_[i]).value_or("-").empty()) continue;
       if (table_.before.empty() && !commentIn(lines_[i])) table_.before = lines_[i];
       above.push_back(i);
     }
@@ -263,16 +306,16 @@ class TableReader {
       });
     };
     std::vector<std::string> units;
+    const bool has_halves = hasHalvesOfNumbers();
     for (std::size_t k = 0; k < above.size() && k < 3; ++k) {
       static const std::regex label("^(columns|channels|fields|units)\\s*:\\s*", std::regex::icase);
       const std::optional<std::string> comment = commentIn(lines_[above[k]]);
       const std::vector<std::string> titles =
           titlesIn(comment ? std::regex_replace(*comment, label, "") : lines_[above[k]]);
-      if (separator_ == ',' && 2 * titles.size() == width_ && has_names(titles)) {
-        fail(above[k], "has " + std::to_string(titles.size()) + " cells, the rows have " + std::to_string(width_) +
-                           ": a comma cannot be the separator and the decimal sign, but in quotes: '" +
-                           shown(lines_[first_]) + "'");
-      }
+      const bool is_half = separator_ == ',' && 2 * titles.size() == width_;
+      if (has_names(titles) && (is_half || (has_halves && titles.size() > 1 && titles.size() < width_)))
+        failForTwoCommas(above[k], "has " + std::to_string(titles.size()) + " cells, the rows have " +
+                                       std::to_string(width_) + ": ");
       if (titles.size() != width_ || !has_names(titles)) break;
       if (units.empty() && std::all_of(titles.begin(), titles.end(), isUnit)) {
         units = titles;
@@ -287,6 +330,7 @@ class TableReader {
       if (commentIn(lines_[above[k]])) table_.notes.emplace_back("the titles are those of the last comment");
       return;
     }
+    if (has_halves) failForTwoCommas(first_, "");
     table_.columns.resize(width_);
   }
 
@@ -313,11 +357,20 @@ class TableReader {
   /// The sign that the numbers have. Digits in threes may be either: others tell.
   void chooseDecimalSign() {
     std::size_t points = 0, commas = 0, unclear = 0;
+    std::vector<std::string> in_threes(width_);
+    std::vector<bool> has_plain(width_);
     eachRow([&](std::size_t i, const Cells& cells) {
-      for (const Cell& cell : cells) {
-        if (cell.text.find_first_of(".,") == std::string::npos) continue;
+      for (std::size_t c = 0; c < cells.size(); ++c) {
+        const Cell& cell = cells[c];
+        if (cell.text.find_first_of(".,") == std::string::npos) {
+          has_plain[c] = has_plain[c] || (numberIn(cell.text, '.') && cell.text.find_first_of("eE") == std::string::npos);
+          continue;
+        }
         const bool by_point = numberIn(cell.text, '.').has_value(), by_comma = numberIn(cell.text, ',').has_value();
-        if (by_point && by_comma) unclear = i + 1;
+        if (by_point && by_comma) {
+          unclear = i + 1;
+          in_threes[c] = cell.text;
+        }
         if (by_point && !by_comma && points == 0) points = i + 1;
         if (by_comma && !by_point && commas == 0) commas = i + 1;
       }
@@ -326,6 +379,13 @@ class TableReader {
       fail(std::max(points, commas) - 1, "the decimal sign is another one than in line " +
                                              std::to_string(std::min(points, commas)) + ": '" +
                                              shown(lines_[std::max(points, commas) - 1]) + "'");
+    // 7,000 in a column with 35 is no 7: decimals would not all be three, or none.
+    for (std::size_t c = 0; points == 0 && commas == 0 && c < width_; ++c) {
+      if (in_threes[c].empty() || !has_plain[c]) continue;
+      sign_ = in_threes[c].find(',') != std::string::npos ? '.' : ',';
+      table_.notes.push_back("'" + in_threes[c] + "' is taken for a number with a separator of thousands");
+      return;
+    }
     if (points == 0 && commas == 0 && unclear > 0 && lines_[unclear - 1].find(',') != std::string::npos &&
         lines_[unclear - 1].find('.') == std::string::npos && separator_ != ',')
       commas = unclear;

@@ -151,9 +151,10 @@ std::map<std::string, ForceColumn> findForceColumns(const TextTable& table,
   }
   for (const char* name : {"position", "force"}) {
     if (columns.count(name) > 0) continue;
+    const std::string before = table.before.empty() ? "" : " (above it is '" + table.before.substr(0, 60) + "')";
     const std::string titled = table.title_line > 0
                                    ? "line " + std::to_string(table.title_line) + " has the columns " + shown(table)
-                                   : "it has no titles before line " + std::to_string(table.first_line) + ", and " +
+                                   : "it has no titles before line " + std::to_string(table.first_line) + before + ", and " +
                                          std::to_string(table.columns.size()) + " columns";
     throw ConfigError(table.path + ": has no column of the " + name + ": " + titled + "; name one with --column " +
                       name + "=NAME:UNIT, NAME a title or a number from 1");
