@@ -29,7 +29,8 @@ bool moves(const std::string& command) { return command == "home" || command == 
 const char* const InjectionControllerNode::kHelp =
     "injection_controller: controls the needle and holds it when an input is invalid.\n"
     "In: /teleop/servo_cp /needle/measured_cp, /cell/predicted_cf or /force_sensor/measured_cf, /injector/state,\n"
-    "/needle/abilities, /needle/operating_state, /needle/loop_state, /cell/estimate, /controller/state_command (enable, disable, pause, resume, home, unhome, "
+    "/needle/abilities, /needle/operating_state, /needle/loop_state, /cell/estimate, /controller/state_command "
+    "(enable, disable, pause, resume, home, unhome, "
     "approach, indent,\n"
     "inject, withdraw). Action: /controller/inject. Out: /needle/servo_cp /controller/operating_state\n"
     "/controller/injection_state /injector/pulse /injector/stop.\n";
@@ -43,6 +44,7 @@ InjectionControllerNode::Parameters InjectionControllerNode::Parameters::read(co
   reader.boolean("auto_enable", parameters.auto_enable);
   reader.boolean("injector", parameters.injector);
   parameters.model = InjectionControllerConfig::read(reader);
+  parameters.model.witness.measured = parameters.force_source == "predicted";
   reader.finish();
   return parameters;
 }
@@ -58,6 +60,7 @@ InjectionControllerNode::InjectionControllerNode(Bus& bus)
       setpoint_(cycle_.output<geometry_msgs::PoseStamped>("needle/servo_cp")),
       injection_(cycle_.output<cell_microinjection::InjectionStatus>("controller/injection_state", true)),
       rig_(bus),
+      witnesses_(bus, parameters_.force_source, parameters_.input_timeout),
       loop_state_(bus, "controller/loop_state"),
       action_(bus, model_, parameters_.model.goal),
       repeated_(bus, kControllerCommandTopic),
@@ -164,6 +167,7 @@ void InjectionControllerNode::step(const Cycle::Tick& tick) {
     input.needle = needle->translation();
     input.axis = needle->linear().col(2);
     input.force = validForce(force_.get(tick.now), needle->linear());
+    witnesses_.fill(*needle, tick.now, input);
   }
   if (const auto setpoint = model_.step(input, tick.dt)) {
     Eigen::Isometry3d pose = needle ? *needle : Eigen::Isometry3d::Identity();

@@ -17,6 +17,7 @@
 #include "nodes/injection/injection_action.h"
 #include "nodes/injection/injector_link.h"
 #include "nodes/injection/rig_watch.h"
+#include "nodes/injection/witnesses.h"
 #include "nodes/runtime/command_log.h"
 #include "nodes/runtime/command_source.h"
 #include "nodes/runtime/cycle.h"
@@ -31,8 +32,8 @@ namespace microinjection {
 ///      (PoseStamped), /cell/predicted_cf or /force_sensor/measured_cf (WrenchStamped),
 ///      /controller/state_command (StringStamped), /needle/abilities (ManipulatorAbilities, to
 ///      drive a slow rig slowly), /needle/operating_state and /needle/loop_state (does the rig
-///      follow?), /injector/state, /cell/estimate (CellEstimate, the expected puncture);
-///      the action Inject on /controller/inject
+///      follow?), the other force, /cell/parameters and /cell/state (see Witnesses), /injector/state, /cell/estimate
+///      (CellEstimate, the expected puncture); the action Inject on /controller/inject
 /// Out: /needle/servo_cp (PoseStamped, `world`), /controller/operating_state (OperatingState,
 ///      latched, on change and after each state_command), /controller/injection_state
 ///      (InjectionStatus, latched, on change and ten times a second), /injector/pulse,
@@ -78,6 +79,7 @@ class InjectionControllerNode {
   Output<cell_microinjection::InjectionStatus>& injection_;
   std::unique_ptr<InjectorLink> injector_;  ///< null without an injector
   RigWatch rig_;
+  Witnesses witnesses_;
   LoopStatePublisher loop_state_;
   InjectionAction action_;
   RepeatedCommands repeated_;

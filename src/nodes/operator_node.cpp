@@ -43,6 +43,7 @@ OperatorNode::OperatorNode(Bus& bus)
       phase_(cycle_.output<cell_microinjection::StringStamped>("operator/phase", true)),
       command_output_(cycle_.output<cell_microinjection::StringStamped>("controller/state_command")),
       go_(!parameters_.wait_for_go) {
+  force_.one_sender = false;  // the watchdog sends zero force beside the bridge
   cycle_.onStep([this](const Cycle::Tick& tick) { step(tick); });
 }
 

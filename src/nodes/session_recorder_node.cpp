@@ -98,6 +98,7 @@ SessionRecorderNode::SessionRecorderNode(Bus& bus)
     hand_ = &cycle_.input<geometry_msgs::PoseStamped>("haptic/measured_cp", InputPhase::kSampled, kForever);
     clutch_ = &cycle_.input<sensor_msgs::Joy>("haptic/clutch", InputPhase::kSampled, kForever);
     hand_force_ = &cycle_.input<geometry_msgs::WrenchStamped>("haptic/servo_cf", InputPhase::kSampled, 0.05);
+    hand_force_->one_sender = false;  // the watchdog sends zero force beside the bridge
     phase_ = &cycle_.input<cell_microinjection::StringStamped>("operator/phase", InputPhase::kSampled, kForever);
   }
   began_ = localTime(bus);

@@ -1,3 +1,4 @@
+#!/usr/bin/python3
 """What a tool reads and what it will write, as src/base/output_files.h does for the programs in C++."""
 import os
 from pathlib import Path

@@ -55,6 +55,7 @@ std::string describeHeight(double height) {
 CellParameterServer::CellParameterServer(MemberChange* change, const std::string& unchangeable, PlacedCell& place,
                                          double radius, Cycle& cycle)
     : bus_(cycle.bus()),
+      changed_(cycle.bus().advertise<cell_microinjection::CellParameters>("cell/parameters", 10)),
       change_(change),
       unchangeable_(unchangeable),
       place_(place),
@@ -100,6 +101,11 @@ std::string CellParameterServer::change(const std::vector<std::string>& names, c
     place_.moveTo(*height);
     outcome += (outcome.empty() ? "" : "; ") + describeHeight(*height);
   }
+  cell_microinjection::CellParameters changed;
+  changed.header.stamp = bus_.now();
+  changed.name = names;
+  changed.value = values;
+  changed_.publish(changed);
   const std::lock_guard<std::mutex> lock(mutex_);
   ++changes_;
   return outcome_ = outcome;

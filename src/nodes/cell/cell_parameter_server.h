@@ -18,6 +18,7 @@ namespace microinjection {
 /// right before a step, so that all runs are the same.
 ///
 /// In:      /cell/set_parameters (CellParameters)
+/// Out:     /cell/parameters (CellParameters, those that have changed: the next forces are those of another cell)
 /// Service: ~set_cell_parameters (SetCellParameters)
 class CellParameterServer {
  public:
@@ -39,6 +40,7 @@ class CellParameterServer {
   std::string changeCell(const std::vector<CellParameter>& parameters);
 
   const Bus& bus_;
+  Publisher<cell_microinjection::CellParameters> changed_;
   MemberChange* change_;
   std::string unchangeable_;
   PlacedCell& place_;

@@ -50,6 +50,7 @@ HapticDeviceNode::HapticDeviceNode(Bus& bus, const std::string& default_kind)
       operator_present_(cycle_.output<sensor_msgs::Joy>("haptic/operator_present")),
       commands_(bus.advertise<cell_microinjection::StringStamped>("controller/state_command", 10)),
       adapter_(kind_.make(cycle_, reader_)) {
+  force_.one_sender = false;  // the watchdog sends zero force beside the bridge
   using cell_microinjection::OperatingState;
   controller_ = subscribeGuarded<OperatingState>(
       bus, "controller/operating_state", 10,

@@ -18,8 +18,8 @@ RigWatch::RigWatch(Bus& bus) {
         state_ = enabled ? "" : "the micromanipulator is " + message.state;
         if (!enabled) missed_ = state_;
       });
-  loop_states_ = subscribeGuarded<LoopState>(
-      bus, "needle/loop_state", 10, [this](const LoopState& message, const std::string&) {
+  loop_states_ =
+      subscribeGuarded<LoopState>(bus, "needle/loop_state", 10, [this](const LoopState& message, const std::string&) {
         loop_ = message.follows ? "" : "the micromanipulator holds: " + message.hold_reason;
         if (!message.follows) missed_ = loop_;
       });

@@ -35,6 +35,7 @@ NeedleCommands::NeedleCommands(Cycle& cycle, const MicromanipulatorConfig& confi
 
 void NeedleCommands::subscribe() {
   servo_.stamp_rule = StampRule::kCommand;
+  servo_.one_sender = false;  // authorize() names a second one
   // Checks each message between two steps, also those that a newer one replaces.
   servo_.onMessage([this](const geometry_msgs::PoseStamped& message, const ros::Time& now) {
     if (secondsBetween(message.header.stamp, now) <= config_.command_timeout) authorize(servo_.sender);

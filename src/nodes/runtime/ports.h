@@ -14,6 +14,7 @@
 #include "nodes/runtime/command_source.h"
 #include "nodes/runtime/finite_message.h"
 #include "nodes/runtime/message_guard.h"
+#include "nodes/runtime/sole_sender.h"
 
 namespace microinjection {
 
@@ -36,14 +37,20 @@ class InputPort {
   /// Age of the last message (s of ROS time), from the older of its stamp and its arrival; infinite
   /// before the first.
   double age(const ros::Time& now) const { return received.isZero() ? INFINITY : secondsBetween(received, now); }
-  /// Whether the last message is valid and not older than `timeout`.
-  bool fresh(const ros::Time& now) const { return !disconnected && valid() && age(now) >= 0 && age(now) <= timeout; }
+  /// Whether the last message is valid, not older than `timeout`, and from the only sender.
+  bool fresh(const ros::Time& now) const {
+    return !disconnected && valid() && age(now) >= 0 && age(now) <= timeout && rivals(now).empty();
+  }
+  /// The two nodes that both send now, of which nobody can know which one is right; empty: one does.
+  std::string rivals(const ros::Time& now) const { return one_sender ? senders.rivals(now) : ""; }
 
   const std::string topic;
   const InputPhase phase;
-  const double timeout;       ///< s of ROS time
-  ros::Time received;         ///< of the last message
-  std::string sender;         ///< node of the last message, also of a refused one
+  const double timeout;  ///< s of ROS time
+  ros::Time received;    ///< of the last message
+  std::string sender;    ///< node of the last message, also of a refused one
+  SoleSender senders;
+  bool one_sender = true;     ///< else several nodes may send: commands, whose authority the node checks itself
   bool disconnected = false;  ///< no message is fresh; see Cycle
   /// kAny: handlers also receive messages stamped ahead, which are never fresh. kCommand: live, a
   /// message without a stamp gets that of its arrival, unless its publisher latches.
@@ -70,6 +77,7 @@ class Input : public InputPort {
   /// Refuses a message whose stamp is ahead; the last one stays.
   void receive(const Pointer& message, const Arrival& arrival) {
     sender = arrival.sender;
+    senders.receive(arrival.sender, arrival.time);
     if (message->header.stamp.isZero() && stamp_rule == StampRule::kCommand) return receiveUnstamped(*message, arrival);
     if (refuses(*message, arrival.time)) return;
     notify(*message, arrival.time);

@@ -99,7 +99,7 @@ std::string InjectionController::start(const InjectionGoal& goal) {
     return text.str();
   }
   run_.start(goal, *setpoint_);
-  monitor_.reset();
+  resetMonitors();
   apply(InjectionEvent::kStart);
   return "";
 }
@@ -113,6 +113,8 @@ std::string InjectionController::applyOperatorCommand(InjectionEvent event) {
   if (injection_ != InjectionState::kPunctured) return std::string("it is no step from ") + toText(injection_);
   if (!hold_reason_.empty() && hold_reason_ != kNoTarget) return "the needle is held: " + hold_reason_;
   if (config_.goal.pulse.duration <= 0) return "the goal has no pulse";
+  const std::string denied = contradiction();
+  if (!denied.empty()) return denied;
   hand_pulse_.start(config_.goal.pulse, config_.motion.injector_timeout);
   pulse_by_hand_ = true;
   apply(InjectionEvent::kInject);

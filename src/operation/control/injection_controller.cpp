@@ -22,6 +22,7 @@ constexpr double kLatestRig = 10;     ///< s
 InjectionController::InjectionController(const InjectionControllerConfig& config)
     : config_(config),
       monitor_(config.detection),
+      witness_(config.detection, config.witness),
       run_(config.motion, config.guards, config.expectation, config.mode == "automatic"),
       following_error_limit_(followingErrorLimit(config.guards, std::numeric_limits<double>::infinity())) {}
 
@@ -66,7 +67,10 @@ void InjectionController::apply(InjectionEvent event) {
     if (pulse_by_hand_ && event == InjectionEvent::kWithdraw) notice_ = "the pulse was ended: the needle is withdrawn";
     pulse_by_hand_ = false;
   }
-  if (event == InjectionEvent::kLost || event == InjectionEvent::kOut) monitor_.rearm();
+  if (event == InjectionEvent::kLost || event == InjectionEvent::kOut) {
+    monitor_.rearm();
+    witness_.rearm();
+  }
   if (event == InjectionEvent::kOut && paused_) hold("PAUSED");
 }
 
@@ -79,7 +83,7 @@ void InjectionController::engage(const Eigen::Vector3d& needle, const Eigen::Vec
   needle_speed_.reset();
   // In the cell, home, the contact point and the force at rest stay.
   if (isInside(needle, axis)) return;
-  monitor_.reset();
+  resetMonitors();
   home_ = needle;
   if (config_.mode == "automatic" && config_.start_when_enabled && state_ == OperatingState::kEnabled)
     start(config_.goal);
@@ -91,7 +95,7 @@ std::optional<Eigen::Vector3d> InjectionController::step(const Input& input, dou
   if (needle_valid && isValid(input.force)) guard_force_ = input.force->dot(input.axis);
   if (state_ == OperatingState::kDisabled || state_ == OperatingState::kFault) {
     // Something else may have moved the needle out of the cell.
-    if (needle_valid && monitor_.touched() && !isInside(*input.needle, input.axis)) monitor_.reset();
+    if (needle_valid && monitor_.touched() && !isInside(*input.needle, input.axis)) resetMonitors();
     return std::nullopt;
   }
   if (!needle_valid) {
@@ -157,7 +161,24 @@ bool InjectionController::rigIsAtFault(const Eigen::Vector3d& needle, double dt)
   return true;
 }
 
+void InjectionController::resetMonitors() {
+  monitor_.reset();
+  witness_.reset();
+}
+
+/// Why no pulse may begin; empty: no witness denies the puncture.
+std::string InjectionController::contradiction() const {
+  if (denies_puncture_) return "the force fell, but the cell whose force is predicted is not punctured";
+  return witness_.deniesPuncture();
+}
+
 void InjectionController::observe(const Input& input, bool force_valid, double dt) {
+  if (input.cell_changed) {
+    monitor_.skip();
+    witness_.skip();
+  }
+  denies_puncture_ = input.predicted_inside && !*input.predicted_inside;
+  witness_.step(*input.needle, input.axis, input.witness);
   if (force_valid) {
     monitor_.step(*input.needle, input.axis, *input.force);
   } else {
@@ -238,7 +259,14 @@ std::optional<Eigen::Vector3d> InjectionController::ownTarget(const Input& input
     return std::nullopt;
   }
   run_.expect(input.expected);
-  const InjectionRun::Step step = run_.step(injection_, monitor_, input.injector, *setpoint_, input.axis, dt);
+  InjectionRun::Step step = run_.step(injection_, monitor_, input.injector, *setpoint_, input.axis, dt);
+  if (!step.stop) step.reason = out || run_.result().punctures > 0 ? "" : witness_.disagreement(monitor_);
+  if (step.event == InjectionEvent::kInject && step.reason.empty() && run_.goal().puncture)
+    step.reason = contradiction();
+  if (!step.stop && !step.reason.empty()) {
+    step.event.reset();
+    step.stop = InjectionOutcome::kGuard;
+  }
   if (applyStep(step)) return step.target;
   stopNeedle(input);
   return std::nullopt;
@@ -266,6 +294,7 @@ void InjectionController::stepHome(const Input& input, double dt) {
   if (byHand()) return;
   apply(InjectionEvent::kOut);
   monitor_.rearm();
+  witness_.rearm();
 }
 
 void InjectionController::holdUnhomed() {

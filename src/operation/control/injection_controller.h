@@ -9,6 +9,7 @@
 #include "base/config_reader.h"
 #include "base/operating_state.h"
 #include "operation/control/expected_puncture.h"
+#include "operation/control/force_witness.h"
 #include "operation/control/guards.h"
 #include "operation/control/hand_observer.h"
 #include "operation/control/injection_goal.h"
@@ -27,6 +28,7 @@ struct InjectionControllerConfig {
   DetectionConfig detection;
   InjectionMotionConfig motion;
   ExpectationConfig expectation;
+  WitnessConfig witness;
   InjectionGoal goal;  ///< for injections started without one
 
   static InjectionControllerConfig read(ConfigReader& reader);
@@ -43,6 +45,7 @@ struct InjectionControllerConfig {
 ///     guard               by hand                       by itself
 ///     force, depth        may only be withdrawn         stops, except during withdrawal
 ///     expected puncture   -                             indent: stops
+///     witnesses disagree  -                             stops; a pulse does not begin
 ///     time in a state     -                             stops, also during withdrawal
 ///     no valid force      held meanwhile                indent, inject: stops; withdraw: none;
 ///                                                       else held meanwhile
@@ -65,6 +68,9 @@ class InjectionController {
     std::optional<InjectorReport> injector;
     std::string rig_hold;                             ///< why the rig does not follow set-points; empty: it does
     std::optional<ExpectedPuncture> expected;         ///< of the outermost membrane
+    std::optional<Eigen::Vector3d> witness;           ///< N, as `force`, of the source that it is not: see ForceWitness
+    std::optional<bool> predicted_inside;             ///< whether the cell whose force is predicted is punctured
+    bool cell_changed = false;                        ///< its force now is no event of the needle
     Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< of the pipette, out of the cell, `world`
   };
 
@@ -143,6 +149,8 @@ class InjectionController {
   bool rigIsAtFault(const Eigen::Vector3d& needle, double dt);
   void monitorManualPulse(const Input& input, double dt);
   void observe(const Input& input, bool force_valid, double dt);
+  void resetMonitors();
+  std::string contradiction() const;
   void monitorPulse(const Input& input, double dt);
   std::optional<Eigen::Vector3d> handTarget(const Input& input);
   std::optional<Eigen::Vector3d> ownTarget(const Input& input, double dt);
@@ -162,7 +170,9 @@ class InjectionController {
   OperatingState state_ = OperatingState::kDisabled;
   InjectionState injection_ = InjectionState::kIdle;
   NeedleMonitor monitor_;
-  double guard_force_ = 0;  ///< N
+  ForceWitness witness_;
+  bool denies_puncture_ = false;  ///< the model of the predicted force has no puncture where the needle is
+  double guard_force_ = 0;        ///< N
   HandObserver observer_;
   InjectionRun run_;
   InjectorWait hand_pulse_;

@@ -18,6 +18,8 @@ InjectionControllerConfig InjectionControllerConfig::read(ConfigReader& reader) 
   }
   ConfigReader expectation = reader.section("expected_puncture");
   config.expectation.read(expectation);
+  ConfigReader witness = reader.section("witness");
+  config.witness.read(witness);
   ConfigReader goal = reader.section("goal");
   config.goal = InjectionGoal::read(goal);
   if (config.goal.depth > config.guards.depth_limit) goal.error("depth", "must not be above depth_limit");

@@ -21,7 +21,8 @@ namespace microinjection {
 /// test asks for injections, by words and by the action.
 class InjectionChain {
  public:
-  explicit InjectionChain(std::vector<std::string> overrides = {}) : session(completed(std::move(overrides))) {
+  explicit InjectionChain(const std::vector<std::string>& overrides = {}, const std::string& scene = "injected_oocyte")
+      : session(completed(overrides, scene)) {
     TestNode& world = session.world();
     world.hear<cell_microinjection::InjectionStatus>("controller/injection_state");
     world.hear<cell_microinjection::OperatingState>("controller/operating_state");
@@ -97,16 +98,19 @@ class InjectionChain {
   VirtualSession session;
 
  private:
-  static std::vector<std::string> completed(std::vector<std::string> overrides) {
+  static std::vector<std::string> completed(const std::vector<std::string>& overrides, const std::string& scene) {
     // The ways through the air are shorter than by config.
     const std::string motion = "overrides.injection_controller.motion.";
-    for (const std::string& more :
-         {std::string("hand.device:=none"), std::string("display.markers:=false"), std::string("model:=live"),
-          "cell:=" + testFile("scenes/injected_oocyte.yaml"), std::string("injection.start_when_enabled:=false"),
-          motion + "stab_speed:=20e-6", motion + "approach_speed:=40e-6", motion + "retract_speed:=80e-6"}) {
-      overrides.push_back(more);
-    }
-    return overrides;
+    std::vector<std::string> all = {std::string("hand.device:=none"),
+                                    std::string("display.markers:=false"),
+                                    std::string("model:=live"),
+                                    "cell:=" + testFile("scenes/" + scene + ".yaml"),
+                                    std::string("injection.start_when_enabled:=false"),
+                                    motion + "stab_speed:=20e-6",
+                                    motion + "approach_speed:=40e-6",
+                                    motion + "retract_speed:=80e-6"};
+    all.insert(all.end(), overrides.begin(), overrides.end());
+    return all;
   }
   template <typename Message>
   const Message& newest(const std::string& topic) {

@@ -69,9 +69,8 @@ std::vector<RigHold> holds() {
     for (const char* by : {"disable", "stop", "pause", "restart"}) all.push_back({rig, by});
   return all;
 }
-INSTANTIATE_TEST_SUITE_P(Rigs, RigHoldTest, testing::ValuesIn(holds()), [](const auto& hold) {
-  return hold.param.rig + "_" + hold.param.by;
-});
+INSTANTIATE_TEST_SUITE_P(Rigs, RigHoldTest, testing::ValuesIn(holds()),
+                         [](const auto& hold) { return hold.param.rig + "_" + hold.param.by; });
 
 }  // namespace
 }  // namespace microinjection

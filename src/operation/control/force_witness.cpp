@@ -1,0 +1,80 @@
+#include "operation/control/force_witness.h"
+
+#include <algorithm>
+#include <limits>
+#include <sstream>
+
+namespace microinjection {
+namespace {
+
+constexpr double kFallen = 0.9;  ///< of the largest force: a smaller one has fallen
+
+}  // namespace
+
+void WitnessConfig::read(ConfigReader& reader) {
+  reader.number("depth", depth, Range::positive());
+  reader.number("force", force, Range::positive());
+  reader.number("ratio", ratio, Range{1, std::numeric_limits<double>::infinity(), true, true});
+}
+
+ForceWitness::ForceWitness(const DetectionConfig& detection, const WitnessConfig& config)
+    : config_(config), monitor_(detection) {}
+
+void ForceWitness::reset() {
+  monitor_.reset();
+  punctured_ = false;
+  largest_ = 0;
+}
+
+void ForceWitness::rearm() {
+  monitor_.rearm();
+  punctured_ = false;
+  largest_ = 0;
+}
+
+void ForceWitness::skip() { monitor_.skip(); }
+
+void ForceWitness::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis,
+                        const std::optional<Eigen::Vector3d>& force) {
+  tip_ = tip;
+  axis_ = axis;
+  heard_ = force && force->allFinite();
+  if (!heard_) return monitor_.skip();
+  monitor_.step(tip, axis, *force);
+  if (monitor_.confirmed() && !*monitor_.confirmed()) rearm();  // it was noise
+  if (!monitor_.touched()) return;
+  punctured_ = punctured_ || monitor_.punctured();
+  largest_ = std::max(largest_, monitor_.force());
+}
+
+std::string ForceWitness::disagreement(const NeedleMonitor& acting) const {
+  if (!heard_ || !monitor_.ready() || !acting.ready() || !(acting.touched() || monitor_.touched())) return "";
+  const bool acting_more = acting.touched() && (!monitor_.touched() || acting.force() >= monitor_.force());
+  const NeedleMonitor &more = acting_more ? acting : monitor_, &less = acting_more ? monitor_ : acting;
+  const std::string sensor = "the sensor", prediction = "the prediction";
+  const std::string &one = acting_more == config_.measured ? prediction : sensor,
+                    &other = acting_more == config_.measured ? sensor : prediction;
+  std::ostringstream text;
+  if (!less.touched()) {
+    const double depth = more.depthOf(tip_, axis_);
+    if (depth <= config_.depth && more.force() <= config_.force) return "";
+    text << one << " has felt a touch " << depth << " m ago and " << more.force() << " N since, " << other
+         << " none; allowed are witness/depth = " << config_.depth << " m and witness/force = " << config_.force
+         << " N";
+  } else if (more.force() > config_.force && more.force() > config_.ratio * less.force()) {
+    text << one << " feels " << more.force() << " N, " << other << ' ' << less.force()
+         << " N; allowed is a ratio of witness/ratio = " << config_.ratio;
+  }
+  return text.str();
+}
+
+std::string ForceWitness::deniesPuncture() const {
+  if (!config_.measured || !heard_ || !monitor_.touched() || punctured_) return "";
+  const double force = monitor_.force();
+  if (force <= kFallen * largest_) return "";
+  std::ostringstream text;
+  text << "the predicted force fell, but that of the sensor, " << force << " N, did not";
+  return text.str();
+}
+
+}  // namespace microinjection

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+
+#include "base/config_reader.h"
+#include "operation/control/needle_monitor.h"
+
+namespace microinjection {
+
+/// How far two forces may differ before the first membrane has failed.
+struct WitnessConfig {
+  /// m and N past the touch that one of the two forces has felt, by which the other one must have felt it, too. The
+  /// places of the two touches differ by where the scene has the cell, by noise and by latency.
+  double depth = 10e-6, force = 0.5e-6;
+  double ratio = 5;      ///< of the two forces, once the larger one is past `force`
+  bool measured = true;  ///< the witness is the sensor's force: it also feels whether a membrane failed
+
+  void read(ConfigReader& reader);
+};
+
+/// The force that the controller does not act on: the sensor's while it acts on the prediction, or the reverse. A
+/// sensor that is dead, frozen, late or in another unit, or a cell that is not where the scene has it, is found by
+/// their disagreement.
+class ForceWitness {
+ public:
+  ForceWitness(const DetectionConfig& detection, const WitnessConfig& config);
+
+  void reset();
+  void rearm();
+  void skip();
+
+  /// After the controller's monitor; `force` (N, on the tip, `world`): empty without a valid one.
+  void step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, const std::optional<Eigen::Vector3d>& force);
+
+  /// Why the needle must not go on; empty: the two forces agree, or there is no witness. `acting`: the monitor of the
+  /// force that the controller acts on. Only before the first puncture: the membranes of a cell and of its model may
+  /// fail one after the other.
+  std::string disagreement(const NeedleMonitor& acting) const;
+  /// Why the sensor contradicts a puncture: its force has not fallen. Empty: it does not, or feels nothing.
+  std::string deniesPuncture() const;
+
+ private:
+  WitnessConfig config_;
+  NeedleMonitor monitor_;
+  Eigen::Vector3d tip_ = Eigen::Vector3d::Zero(), axis_ = Eigen::Vector3d::UnitZ();  ///< m; of the last step
+  bool heard_ = false;                                                               ///< in the last step
+  bool punctured_ = false;  ///< a puncture was felt since the touch
+  double largest_ = 0;      ///< N, of the smoothed force, since the touch
+};
+
+}  // namespace microinjection

@@ -1,0 +1,96 @@
+// Sources that contradict each other while the controller moves the needle by itself.
+
+#include <gtest/gtest.h>
+
+#include "cell_microinjection/CellParameters.h"
+#include "nodes/injection/injection_chain.h"
+
+namespace microinjection {
+namespace {
+
+class WitnessesTest : public testing::Test {
+ protected:
+  using Wrench = geometry_msgs::WrenchStamped;
+  static constexpr const char* kMeasured = "overrides.injection_controller.force_source:=measured";
+
+  /// From now on each value of the sensor is what `value` makes of it.
+  void alterSensor(InjectionChain& chain, std::function<void(Wrench&)> change) {
+    chain.session.executive().network().alter("/force_sensor/measured_cf", [change](Passage passage) {
+      auto altered = boost::make_shared<Wrench>(*boost::static_pointer_cast<const Wrench>(passage.message));
+      change(*altered);
+      passage.message = altered;
+      return std::vector<Passage>{passage};
+    });
+  }
+  static void expectHeldBeforeAPuncture(InjectionChain& chain) {
+    EXPECT_TRUE(chain.session.until([&] { return chain.status().outcome == "guard"; }, 30)) << chain.status();
+    EXPECT_NE(chain.status().reason.find("the sensor"), std::string::npos) << chain.status().reason;
+    EXPECT_EQ(chain.injector().pulses, 0u);
+    const Eigen::Vector3d held = chain.resting();
+    chain.session.run(2);
+    EXPECT_LT((chain.needle() - held).norm(), 0.1e-6);
+    EXPECT_FALSE(chain.cell().inside);
+  }
+};
+
+TEST_F(WitnessesTest, ADeadSensorHoldsTheApproach) {
+  InjectionChain chain({kMeasured}, "tough_oocyte");
+  alterSensor(chain, [](Wrench& wrench) { wrench.wrench.force.x = wrench.wrench.force.y = wrench.wrench.force.z = 0; });
+  chain.say("approach");
+  expectHeldBeforeAPuncture(chain);
+}
+
+TEST_F(WitnessesTest, ASensorThatFreezesAtTheTouchHoldsTheNeedle) {
+  InjectionChain chain({kMeasured}, "tough_oocyte");
+  std::optional<geometry_msgs::Wrench> frozen;
+  alterSensor(chain, [&](Wrench& wrench) {
+    if (!frozen && chain.cell().in_contact) frozen = wrench.wrench;
+    if (frozen) wrench.wrench = *frozen;
+  });
+  chain.say("approach");
+  expectHeldBeforeAPuncture(chain);
+}
+
+TEST_F(WitnessesTest, AForceThatFallsWithoutAPunctureGivesNoPulse) {
+  // As by a served cell that becomes softer: the cell is intact, and says so.
+  InjectionChain chain({}, "tough_oocyte");
+  double share = 1;
+  chain.session.executive().network().alter("/cell/predicted_cf", [&share](Passage passage) {
+    auto altered = boost::make_shared<Wrench>(*boost::static_pointer_cast<const Wrench>(passage.message));
+    altered->wrench.force.z *= share;
+    passage.message = altered;
+    return std::vector<Passage>{passage};
+  });
+  chain.say("approach");
+  ASSERT_TRUE(chain.reaches("indent"));
+  ASSERT_TRUE(chain.session.until([&] { return chain.status().depth > 2e-6; }));
+  share = 0.4;
+  EXPECT_TRUE(chain.session.until([&] { return chain.status().outcome == "guard"; }, 30)) << chain.status();
+  EXPECT_NE(chain.status().reason.find("is not punctured"), std::string::npos) << chain.status().reason;
+  EXPECT_EQ(chain.injector().pulses, 0u);
+}
+
+TEST_F(WitnessesTest, NewsOfAChangedCellKeepItsFallFromBeingAPuncture) {
+  InjectionChain chain({}, "tough_oocyte");
+  double share = 1;
+  chain.session.executive().network().alter("/cell/predicted_cf", [&share](Passage passage) {
+    auto altered = boost::make_shared<Wrench>(*boost::static_pointer_cast<const Wrench>(passage.message));
+    altered->wrench.force.z *= share;
+    passage.message = altered;
+    return std::vector<Passage>{passage};
+  });
+  chain.session.world().publisher<cell_microinjection::CellParameters>("cell/parameters");
+  chain.say("approach");
+  ASSERT_TRUE(chain.reaches("indent"));
+  ASSERT_TRUE(chain.session.until([&] { return chain.status().depth > 2e-6; }));
+  cell_microinjection::CellParameters news;
+  news.header.stamp = chain.session.world().bus().now();
+  chain.session.world().say("cell/parameters", news);
+  share = 0.4;
+  chain.session.run(0.1);
+  EXPECT_EQ(chain.status().punctures, 0u);
+  EXPECT_EQ(chain.status().state, "indent");
+}
+
+}  // namespace
+}  // namespace microinjection

@@ -1,0 +1,46 @@
+#include "nodes/runtime/sole_sender.h"
+
+#include <gtest/gtest.h>
+
+namespace microinjection {
+namespace {
+
+ros::Time at(double seconds) { return ros::Time(100 + seconds); }
+
+TEST(SoleSender, NamesTwoThatSendAtOnce) {
+  SoleSender senders;
+  senders.receive("/sensor", at(0));
+  EXPECT_EQ(senders.rivals(at(0)), "");
+  senders.receive("/stranger", at(0.1));
+  EXPECT_EQ(senders.rivals(at(0.1)), "/sensor and /stranger");
+  senders.receive("/sensor", at(0.2));
+  EXPECT_EQ(senders.rivals(at(0.2)), "/sensor and /stranger");
+}
+
+TEST(SoleSender, OneThatHasStoppedIsNoRival) {
+  SoleSender senders;
+  senders.receive("/stranger", at(0));
+  for (double t = 0.001; t < 1; t += 0.001) senders.receive("/sensor", at(t));
+  EXPECT_EQ(senders.rivals(at(1)), "");
+}
+
+TEST(SoleSender, ASuccessorTakesOver) {
+  SoleSender senders;
+  senders.receive("/old", at(0));
+  senders.receive("/new", at(0.6));
+  EXPECT_EQ(senders.rivals(at(0.6)), "");
+}
+
+TEST(SoleSender, OneMessageOfAStrangerIsEnough) {
+  SoleSender senders;
+  for (double t = 0; t < 1; t += 0.001) senders.receive("/sensor", at(t));
+  senders.receive("/stranger", at(1));
+  for (double t = 1.001; t < 1.4; t += 0.001) {
+    senders.receive("/sensor", at(t));
+    EXPECT_NE(senders.rivals(at(t)), "");
+  }
+  EXPECT_EQ(senders.rivals(at(1.6)), "");
+}
+
+}  // namespace
+}  // namespace microinjection
