@@ -29,7 +29,7 @@ cell_microinjection::CellInImage toMessage(const CellDetection& cell) {
   message.y = cell.centre.y;
   setCovariance(cell.centre_covariance, message);
   message.diameter = cell.outer().ellipse.meanDiameter();
-  message.diameter_deviation = cell.size.isFound() ? std::sqrt(cell.outer().covariance(2, 2)) : kNotMeasured;
+  message.diameter_deviation = cell.size.isFound() ? diameterDeviation(cell.outer()) : kNotMeasured;
   if (cell.finding.isFound()) message.reason = cell.size.reason;
   const std::optional<ZonaThickness> zona = zonaThickness(cell);
   message.zona_thickness = zona ? zona->thickness : kNotMeasured;

@@ -14,6 +14,9 @@ constexpr int kMostClimb = 8;      // columns
 constexpr double kBorder = 0.5;    // strength of a ray that sees a border
 constexpr double kFoundCoverage = 0.3;
 constexpr int kIndependentRays = 3;  // neighbours that the smoothing ties together
+// px, of a mean diameter. Measured with 1.96 deviations: of 242 drawn discs, 132 drawn zonas and 237 rendered cells 99,
+// 99 and 98 % are within; without it 80, 85 and 92 % are.
+constexpr double kModelDeviation = 0.05;
 
 void forbid(const PolarMap& map, const BorderBand& band, cv::Mat& strength) {
   for (int ray = 0; ray < map.rays(); ++ray) {
@@ -187,6 +190,19 @@ int steepestColumn(const std::vector<double>& slope, int first, int last) {
   return first + static_cast<int>(std::max_element(begin, slope.begin() + last) - begin);
 }
 
+/// The steepest column of the run of columns about one in which the border is a full one: along that run the strength
+/// does not tell. In a drawn image, whose usual slope is nothing, the run is the whole flank.
+int steepestOfRun(const PolarMap& map, const cv::Mat& strength, int ray, int column, Polarity polarity) {
+  const float* row = strength.ptr<float>(ray);
+  int best = column;
+  for (const int way : {-1, 1}) {
+    for (int i = column; i >= 0 && i < map.columns() && row[i] >= 1; i += way) {
+      if (steepness(map, ray, i, polarity) > steepness(map, ray, best, polarity)) best = i;
+    }
+  }
+  return best;
+}
+
 /// A path within `half` columns of a column, to a fraction of a column; negative where not seen.
 std::vector<double> flankPath(const PolarMap& map, Polarity polarity, int column, int half, double scale) {
   cv::Mat strength = borderStrength(map, polarity, kFullBorder * scale);
@@ -196,7 +212,7 @@ std::vector<double> flankPath(const PolarMap& map, Polarity polarity, int column
   const ClosedPath path = closedPath(strength, 1);
   std::vector<double> exact(map.rays(), -1);
   for (int ray = 0; ray < map.rays(); ++ray) {
-    const int i = path.column[ray];
+    const int i = steepestOfRun(map, strength, ray, path.column[ray], polarity);
     if (map.valid().at<unsigned char>(ray, i) != 0 && map.slope().at<float>(ray, i) != 0) {
       exact[ray] = steepest(map, ray, i, polarity);
     }
@@ -247,6 +263,10 @@ CellBorder refineBorder(const Frame& frame, const CellBorder& coarse, const Bord
                   std::max(static_cast<double>(fine.points.size()), 0.3 * rays);
   fine.outside = outsideShare(frame, fit.ellipse);
   return fine;
+}
+
+double diameterDeviation(const CellBorder& border) {
+  return std::sqrt(border.covariance(2, 2) + kModelDeviation * kModelDeviation);
 }
 
 double worthOf(const CellBorder& border) {

@@ -66,6 +66,11 @@ CellBorder refineBorder(const Frame& frame, const CellBorder& coarse, const Bord
 /// bright counts more: the rim of a cell is dark.
 double worthOf(const CellBorder& border);
 
+/// px, standard deviation of the border's mean diameter: that of its points, and what a border differs from an
+/// ellipse of steepest places by. The points of a drawn cell scatter by nothing, and yet its diameter is that of its
+/// pixels and of what smooths them.
+double diameterDeviation(const CellBorder& border);
+
 /// An ellipse about the same centre with both axes changed by the factor.
 Ellipse scaled(const Ellipse& ellipse, double factor);
 

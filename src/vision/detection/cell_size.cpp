@@ -36,7 +36,7 @@ void CellSizeReadings::add(const CellDetection& cell) {
     return;
   }
   Reading reading;
-  reading.diameter = {cell.outer().ellipse.meanDiameter(), std::sqrt(cell.outer().covariance(2, 2))};
+  reading.diameter = {cell.outer().ellipse.meanDiameter(), diameterDeviation(cell.outer())};
   if (const auto zona = zonaThickness(cell)) reading.zona = MeasuredLength{zona->thickness, zona->deviation};
   if (!readings_.empty() &&
       std::abs(reading.diameter.value - readings_.back().diameter.value) > kOtherCell * reading.diameter.value) {

@@ -81,9 +81,8 @@ void drawCell(cv::Mat& image, const CellDetection& cell, Legend& legend) {
   legend.add(format("centre %.1f, %.1f px", cell.centre.x, cell.centre.y), kText);
   const auto diameter = [&](const CellBorder& seen, const char* name, const cv::Scalar& colour) {
     if (!seen.finding.hasValues()) return;
-    legend.add(
-        std::string(name) + format(" %.1f +- %.1f px", seen.ellipse.meanDiameter(), std::sqrt(seen.covariance(2, 2))),
-        colour);
+    legend.add(std::string(name) + format(" %.1f +- %.1f px", seen.ellipse.meanDiameter(), diameterDeviation(seen)),
+               colour);
   };
   diameter(cell.zona_outer, "zona, outside", kZona);
   diameter(cell.zona_inner, "zona, inside", kInner);

@@ -5,7 +5,8 @@
 namespace microinjection {
 namespace {
 
-constexpr double kRim = 1.25;  // over the mean width of the ooplasm's dark rim: one border and its blur
+constexpr double kRim = 1.25;       // over the mean width of the ooplasm's dark rim: one border and its blur
+constexpr double kNormal95 = 1.96;  // standard deviations, of the half width of a 95 % interval
 
 /// Whether a border was not seen at all, or within the ooplasm's rim.
 bool isWithinRim(const CellBorder& border, const CellBorder& ooplasm) {
@@ -18,12 +19,15 @@ bool isWithinRim(const CellBorder& border, const CellBorder& ooplasm) {
 std::optional<ZonaThickness> zonaThickness(const CellDetection& cell) {
   if (!cell.zona_outer.finding.isFound()) return std::nullopt;
   const CellBorder* inner = &cell.zona_inner;
+  double hidden = 0;  // px, standard deviation of the place in the rim
   if (!inner->finding.isFound()) {
     if (!cell.ooplasm.finding.isFound() || !isWithinRim(*inner, cell.ooplasm)) return std::nullopt;
     inner = &cell.ooplasm;
+    hidden = kRim * cell.ooplasm.rim / kNormal95;
   }
   const double difference = cell.zona_outer.ellipse.meanDiameter() - inner->ellipse.meanDiameter();
-  return ZonaThickness{difference / 2, std::sqrt(cell.zona_outer.covariance(2, 2) + inner->covariance(2, 2)) / 2};
+  const double borders = std::hypot(diameterDeviation(cell.zona_outer), diameterDeviation(*inner)) / 2;
+  return ZonaThickness{difference / 2, std::hypot(borders, hidden)};
 }
 
 }  // namespace microinjection

@@ -13,7 +13,8 @@ struct ZonaThickness {
 
 /// Thickness of the zona: to its inner border where that was found. Without a perivitelline gap the
 /// dark rim of the ooplasm covers the inner border, which is then the ooplasm's: an uncertain inner
-/// border within that rim, or none, counts as such. None: no zona, or a border of it is uncertain.
+/// border within that rim, or none, counts as such, and the interval of 95 % reaches over the rim: a gap
+/// that it hides cannot be told from none. None: no zona, or a border of it is uncertain.
 std::optional<ZonaThickness> zonaThickness(const CellDetection& cell);
 
 }  // namespace microinjection

@@ -179,7 +179,7 @@ double errorOf(const CellDetection& cell, const PressedCell& scene) {
 }
 
 TEST(Dimple, TheCellHasTheCentreOfItsUndisturbedOutline) {
-  for (const std::uint64_t seed : {58, 235, 362}) {
+  for (const std::uint64_t seed : {1, 112, 235}) {
     const PressedCell scene(seed);
     EXPECT_GT(errorOf(scene.cell, scene), 1) << seed << ": the ellipse leans into the dimple";
     const CellDetection cell = withNeedle(scene);
@@ -189,7 +189,7 @@ TEST(Dimple, TheCellHasTheCentreOfItsUndisturbedOutline) {
 }
 
 TEST(Dimple, ACellWhoseUndisturbedOutlineIsNotFoundIsUncertain) {
-  const PressedCell scene(39);
+  const PressedCell scene(10);
   ASSERT_TRUE(scene.cell.finding.isFound());
   EXPECT_GT(errorOf(scene.cell, scene), 1) << "the ellipse leans into the dimple";
   const CellDetection cell = withNeedle(scene);
