@@ -74,7 +74,8 @@ bool hasThousands(const std::string& text, char separator, char sign) {
 }
 
 void replaceAll(std::string& text, const std::string& from, const std::string& to) {
-  for (std::size_t i = 0; (i = text.find(from, i)) != std::string::npos; i += to.size()) text.replace(i, from.size(), to);
+  for (std::size_t i = 0; (i = text.find(from, i)) != std::string::npos; i += to.size())
+    text.replace(i, from.size(), to);
 }
 
 /// With the minus sign of a keyboard; without the blanks and apostrophes between digits in threes.
@@ -205,6 +206,14 @@ class TableReader {
     if (most == 0) fail(lines_.empty() ? 0 : firstText(), notATable());
     first_ = firstRow();
     table_.first_line = first_ + 1;
+    std::size_t before = 0;
+    for (std::size_t i = said_separator_ ? 1 : 0; i < first_; ++i) {
+      const Cells cells = isSkipped(i) ? Cells() : cellsOf(i);
+      if (cells.size() == width_ && isRow(cells)) ++before;
+    }
+    if (before > 0)
+      table_.notes.push_back("the table begins in line " + std::to_string(table_.first_line) + ": " +
+                             std::to_string(before) + " rows of numbers before it are left out");
   }
   /// A preamble may have lines that look like rows: the table's rows are the most behind one line of texts.
   std::size_t firstRow() const {
@@ -257,8 +266,9 @@ class TableReader {
     for (const Cell& cell : split(line, separator_)) {
       std::string text = cell.text;
       replaceAll(text, "\u00A0", " ");
-      const bool goes_on = separator_ == ' ' && !titles.empty() && !cell.text.empty() &&
-                           (cell.text[0] == '(' || cell.text[0] == '[' || cell.text[0] == '/' || titles.back().back() == '/');
+      const bool goes_on =
+          separator_ == ' ' && !titles.empty() && !cell.text.empty() &&
+          (cell.text[0] == '(' || cell.text[0] == '[' || cell.text[0] == '/' || titles.back().back() == '/');
       if (goes_on) {
         titles.back() += " " + text;
       } else {
@@ -271,7 +281,8 @@ class TableReader {
     return titles;
   }
   static bool isUnit(const std::string& text) {
-    static const std::regex pattern(R"([\[(]?\s*(|[munpfkM]|µ|μ)(s|m|N|V|Pa|A|Hz|g|rad|deg)\s*[\])]?|[\[(]?[%a]\.?u?\.?[\])]?|[\[(]?-?[\])]?)");
+    static const std::regex pattern(
+        R"([\[(]?\s*(|[munpfkM]|µ|μ)(s|m|N|V|Pa|A|Hz|g|rad|deg)\s*[\])]?|[\[(]?[%a]\.?u?\.?[\])]?|[\[(]?-?[\])]?)");
     return std::regex_match(text, pattern);
   }
 
@@ -289,8 +300,8 @@ class TableReader {
     return found;
   }
   [[noreturn]] void failForTwoCommas(std::size_t index, const std::string& found) const {
-    fail(index, found + "a comma cannot be the separator and the decimal sign, but in quotes: '" + shown(lines_[first_]) +
-                    "'");
+    fail(index, found + "a comma cannot be the separator and the decimal sign, but in quotes: '" +
+                    shown(lines_[first_]) + "'");
   }
 
   void findTitles() {
@@ -348,7 +359,8 @@ class TableReader {
         cut_off_ = i + 1;
       } else {
         std::string text = "has " + std::to_string(cells.size()) + " cells, the table has " + std::to_string(width_);
-        if (separator_ == ',') text += "; a comma is the separator here, and cannot be the decimal sign, too, but in quotes";
+        if (separator_ == ',')
+          text += "; a comma is the separator here, and cannot be the decimal sign, too, but in quotes";
         fail(i, text + ": '" + shown(lines_[i]) + "'");
       }
     }
@@ -363,7 +375,8 @@ class TableReader {
       for (std::size_t c = 0; c < cells.size(); ++c) {
         const Cell& cell = cells[c];
         if (cell.text.find_first_of(".,") == std::string::npos) {
-          has_plain[c] = has_plain[c] || (numberIn(cell.text, '.') && cell.text.find_first_of("eE") == std::string::npos);
+          has_plain[c] =
+              has_plain[c] || (numberIn(cell.text, '.') && cell.text.find_first_of("eE") == std::string::npos);
           continue;
         }
         const bool by_point = numberIn(cell.text, '.').has_value(), by_comma = numberIn(cell.text, ',').has_value();
@@ -407,8 +420,8 @@ class TableReader {
       startClock(column);
       if (!column.texts.empty()) column.texts.resize(column.values.size());
     }
-    if (table_.columns.back().numbers == 0 && table_.columns.back().text.empty() && table_.columns.back().title.empty() &&
-        width_ > 1)
+    if (table_.columns.back().numbers == 0 && table_.columns.back().text.empty() &&
+        table_.columns.back().title.empty() && width_ > 1)
       table_.columns.pop_back();  // each line ends with a separator
   }
 

@@ -9,14 +9,14 @@ namespace microinjection {
 /// A table of numbers as instruments, spreadsheets and people write it: its columns, and what was found on the way.
 struct TextTable {
   struct Column {
-    std::string title;           ///< UTF-8, without the quotes and blanks around it; empty without titles
-    std::string unit;            ///< of a line of units below the titles; else empty
-    std::vector<double> values;  ///< one for each row; not a number where the cell is empty or a text
-    std::size_t numbers = 0;     ///< cells that are numbers, or times of the day
-    bool clock = false;          ///< of the day: the values are s since the first one
+    std::string title;               ///< UTF-8, without the quotes and blanks around it; empty without titles
+    std::string unit;                ///< of a line of units below the titles; else empty
+    std::vector<double> values;      ///< one for each row; not a number where the cell is empty or a text
+    std::size_t numbers = 0;         ///< cells that are numbers, or times of the day
+    bool clock = false;              ///< of the day: the values are s since the first one
     std::vector<std::string> texts;  ///< cells that are neither empty nor numbers, else empty; none: there is no such
-    std::string text;            ///< the first one of them
-    std::size_t text_line = 0;   ///< its line
+    std::string text;                ///< the first one of them
+    std::size_t text_line = 0;       ///< its line
   };
 
   std::string path;
@@ -35,7 +35,8 @@ struct TextTable {
 /// commas, semicolons, tabs or blanks, and in quotes; a decimal point or comma, and separators of thousands; a preamble
 /// and comments (#, %, //) before the titles, titles in the last comment or none; a line of units; times of the day and
 /// dates; a line sep=X. A last line that was cut off is left out. Throws ConfigError that names file, line, what was
-/// found and what is allowed: for rows with another number of cells, two decimal signs, NUL, and a file without a table.
+/// found and what is allowed: for rows with another number of cells, two decimal signs, NUL, and a file without a
+/// table.
 TextTable readTextTable(const std::string& path);
 
 }  // namespace microinjection

@@ -106,6 +106,24 @@ TEST_F(TextTableTest, ThousandsAreSeparated) {
   }
 }
 
+TEST_F(TextTableTest, ThousandsAreSeparatedAsTypesettersDo) {
+  for (const std::string mark : {" ", "'", "\u00A0", "\u2009", "\u2019", "\u202F"}) {
+    std::string text = "t;x\n";
+    for (int i = 0; i < 20; ++i) text += "0,5;\u22121" + mark + "234" + mark + std::to_string(100 + i) + ",25\n";
+    EXPECT_EQ(read(text).columns[1].values[7], -1234107.25) << mark;
+  }
+}
+
+TEST_F(TextTableTest, DigitsInThreesBesideFewerAreNoDecimals) {
+  for (const std::string mark : {",", "."}) {
+    const TextTable table = read("t;x\n35;0\n70;990\n1" + mark + "105;1" + mark + "020\n");
+    EXPECT_EQ(table.columns[0].values[2], 1105) << mark;
+    EXPECT_TRUE(hasNote(table, "'1" + mark + "105' is taken for a number with a separator of thousands"));
+  }
+  EXPECT_EQ(read("t;x\n1,035;2,000\n1,070;2,500\n").columns[0].values[1], 1.07);
+  EXPECT_EQ(read("t;x\n1.035;2.000\n1.070;2.500\n").columns[0].values[1], 1.07);
+}
+
 TEST_F(TextTableTest, TitlesAreFoundWhereTheyAre) {
   const TextTable preamble = read("Force curve\nSpring constant,0.05,0.02\nRate,10\n\n" + kTitles + rows());
   expectRows(preamble, plain_);
@@ -116,6 +134,9 @@ TEST_F(TextTableTest, TitlesAreFoundWhereTheyAre) {
   EXPECT_TRUE(hasNote(comment, "last comment"));
   expectRows(read("# columns: time x f\n# units: s um nN\n" + rows(" ")), {"time (s)", "x (um)", "f (nN)"});
   expectRows(read("time,x,f\ns,[um],(nN)\n" + rows()), {"time (s)", "x ([um])", "f ((nN))"});
+  expectRows(read("#\n# columns: time x f\n#\n" + rows(" ")), {"time", "x", "f"});
+  expectRows(read("time\u00A0(s),x,f\n" + rows()), {"time (s)", "x", "f"});
+  EXPECT_TRUE(hasNote(read("1,2,3\n4,5,6\n" + kTitles + rows()), "line 4: 2 rows of numbers before it are left out"));
   const TextTable none = read(rows());
   expectRows(none, {"", "", ""});
   EXPECT_EQ(none.title_line, 0U);
@@ -167,9 +188,24 @@ TEST_F(TextTableTest, TimesOfTheDay) {
   EXPECT_NEAR(table.columns[0].values[19], 19, 1e-9) << "over midnight";
   text = "time,x\n";
   for (int i = 0; i < 20; ++i)
-    text += "2024-0" + std::to_string(i < 10 ? 2 : 3) + "-" + (i < 10 ? "29" : "01") + "T12:00:00," + std::to_string(i) + "\n";
+    text += "2024-0" + std::to_string(i < 10 ? 2 : 3) + "-" + (i < 10 ? "29" : "01") + "T12:00:00," +
+            std::to_string(i) + "\n";
   table = read(text);
   EXPECT_NEAR(table.columns[0].values[19], 86400, 1e-6) << "a leap year";
+}
+
+TEST_F(TextTableTest, TimesOfTheDayAsTheyAreWritten) {
+  const std::vector<Texts> kTimes = {{"59:59.5", "60:00.5"},
+                                     {"11:59:59.5 am", "12:00:00.5 PM"},
+                                     {"11:59:59.5 PM", "12:00:00.5 AM"},
+                                     {"31.01.2024 23:59:59.5", "01.02.2024 00:00:00.5"},
+                                     {"1/31/2024 23:59:59.5", "2/1/2024 00:00:00.5"},
+                                     {"2024-01-31T23:59:59.5+01:00", "2024-02-01T00:00:00.5+01:00"}};
+  for (const Texts& times : kTimes) {
+    const TextTable table = read("time,x,y\n" + times[0] + ",1,2\n" + times[1] + ",2,3\n");
+    EXPECT_TRUE(table.columns[0].clock) << times[0];
+    EXPECT_NEAR(table.columns[0].values[1], 1, 1e-6) << times[0];
+  }
 }
 
 TEST_F(TextTableTest, CellsThatAreNoNumbersAreNone) {
@@ -216,6 +252,11 @@ TEST_F(TextTableTest, WhatCannotBeReadIsNamedWithItsLine) {
             std::string::npos);
   EXPECT_NE(refusal(kTitles + withCommas(rows())).find("line 1: has 3 cells, the rows have 6: a comma cannot be"),
             std::string::npos);
+  EXPECT_NE(refusal(withCommas(rows())).find("line 1: a comma cannot be"), std::string::npos);
+  EXPECT_NE(
+      refusal("a,b,c\n1,0,02,3,04\n2,5,06,7,08\n").find("line 1: has 3 cells, the rows have 5: a comma cannot be"),
+      std::string::npos);
+  EXPECT_NE(refusal("#\n%\n//\n").find("no row with two numbers"), std::string::npos);
   EXPECT_NE(refusal("a;b;c\n" + rows(";") + withCommas(rows(";"))).find("line 22: the decimal sign is another one"),
             std::string::npos);
   EXPECT_NE(refusal(kTitles + "1,2,3\n" + std::string("4,\0005,6\n", 8)).find("line 3: has a NUL byte"),

@@ -139,8 +139,7 @@ std::map<std::string, ForceColumn> findForceColumns(const TextTable& table,
       columns[quantity.name] = *found;
     } else {
       const std::string& text = table.columns[found->index].text;
-      notes.push_back("column '" + table.titles()[found->index] + "', the " + quantity.name +
-                      ", has no numbers" +
+      notes.push_back("column '" + table.titles()[found->index] + "', the " + quantity.name + ", has no numbers" +
                       (text.empty() ? "" : ", but '" + text + "',") + " and is left out");
     }
   }
@@ -154,8 +153,8 @@ std::map<std::string, ForceColumn> findForceColumns(const TextTable& table,
     const std::string before = table.before.empty() ? "" : " (above it is '" + table.before.substr(0, 60) + "')";
     const std::string titled = table.title_line > 0
                                    ? "line " + std::to_string(table.title_line) + " has the columns " + shown(table)
-                                   : "it has no titles before line " + std::to_string(table.first_line) + before + ", and " +
-                                         std::to_string(table.columns.size()) + " columns";
+                                   : "it has no titles before line " + std::to_string(table.first_line) + before +
+                                         ", and " + std::to_string(table.columns.size()) + " columns";
     throw ConfigError(table.path + ": has no column of the " + name + ": " + titled + "; name one with --column " +
                       name + "=NAME:UNIT, NAME a title or a number from 1");
   }

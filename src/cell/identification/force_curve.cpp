@@ -139,8 +139,9 @@ bool isOfBase(const TextTable& table, const ForceColumn& position, bool has_defl
   };
   const bool bends = has_deflection || config.spring_constant > 0;
   if (config.position_of == "base" && !bends)
-    throw ConfigError(table.path + ": " + column +
-                      " is that of the lever's base: --position-of base needs a column of the deflection, or --spring-constant");
+    throw ConfigError(
+        table.path + ": " + column +
+        " is that of the lever's base: --position-of base needs a column of the deflection, or --spring-constant");
   if (config.position_of != "auto") return config.position_of == "base";
   if (is_any({"tip", "tip_z", "depth", "indentation"})) {
     if (bends)

@@ -25,9 +25,9 @@ constexpr double kLeastMisfit = 0.03;         ///< of the force: a smaller one i
 constexpr double kSignificant = 3;            ///< misfit over what noise alone would leave
 constexpr std::size_t kEnoughInContact = 60;  ///< that are left of a long record
 constexpr std::size_t kFewestInContact = 24;
-constexpr double kKnown = 0.1;                ///< of the samples: a shorter contact is known coarsely
-constexpr std::size_t kFewestSearched = 1000;  ///< samples at the end of a long record, in which a contact is looked for
-constexpr int kBlocks = 12;  ///< of the part in contact, whose means are its smooth part
+constexpr double kKnown = 0.1;                 ///< of the samples: a shorter contact is known coarsely
+constexpr std::size_t kFewestSearched = 1000;  ///< samples, at the end of a record, in which a contact is looked for
+constexpr int kBlocks = 12;                    ///< of the part in contact, whose means are its smooth part
 
 /// Deviation of a sample, from its neighbours: no model changes it. A converter's step adds its rounding.
 double whiteNoise(const ForceCurve& curve) {
@@ -201,8 +201,9 @@ void leaveOutFirst(ForceCurve& curve, std::size_t count) {
     values->erase(values->begin(), values->begin() + static_cast<std::ptrdiff_t>(count));
 }
 
-/// By a first estimate, with and without a drift. It takes means: a contact at the end of a very long way is lost in them,
-/// or known coarsely. It is then looked for in the last half, the last quarter and so on. None: there is no contact.
+/// By a first estimate, with and without a drift. It takes means: a contact at the end of a very long way is lost in
+/// them, or known coarsely. It is then looked for in the last half, the last quarter and so on. None: there is no
+/// contact.
 std::optional<std::size_t> samplesInContact(ForceCurve curve) {
   std::optional<std::size_t> fewest;
   for (; curve.size() > kFewestSearched; leaveOutFirst(curve, curve.size() / 2)) {

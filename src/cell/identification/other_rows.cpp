@@ -55,13 +55,15 @@ OtherRows::OtherRows(const TextTable& table, const ForceCurveConfig& config) : c
       throw ConfigError(table.path + ": --segment = " + config.segment + ": the table has no column 'segment'");
     return;
   }
-  has_used_ = std::any_of(segments_.begin(), segments_.end(), [this](const std::string& segment) { return isUsed(segment); });
+  has_used_ =
+      std::any_of(segments_.begin(), segments_.end(), [this](const std::string& segment) { return isUsed(segment); });
   if (!has_used_ && !config.segment.empty()) {
     std::string all;
     for (const std::string& each : std::set<std::string>(segments_.begin(), segments_.end())) {
       if (!each.empty() && all.size() < kShown) all += (all.empty() ? "" : ", ") + each;
     }
-    throw ConfigError(table.path + ": --segment = " + config.segment + ": the column 'segment' has no such text, but " + all);
+    throw ConfigError(table.path + ": --segment = " + config.segment + ": the column 'segment' has no such text, but " +
+                      all);
   }
 }
 

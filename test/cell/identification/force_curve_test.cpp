@@ -105,6 +105,35 @@ TEST_F(ForceCurveFile, LeavesOutRowsWithoutNumbers) {
   EXPECT_TRUE(hasNote(curve, "3 rows without numbers"));
 }
 
+TEST_F(ForceCurveFile, NamesATextAmongNumbers) {
+  write("time_s,height_m,force_N", [](int i) { return text(i) + "," + text(i) + "," + (i == 9 ? "off" : text(i)); });
+  EXPECT_TRUE(hasNote(readForceCurve(path_, {}), "1 rows without numbers are left out, as that with 'off' in line 12"));
+  write("time_s,height_m,force_N", [](int i) { return "soon," + text(i) + "," + text(i); });
+  EXPECT_TRUE(hasNote(readForceCurve(path_, {}), "the time, has no numbers, but 'soon', and is left out"));
+}
+
+TEST_F(ForceCurveFile, ABaseNeedsADeflection) {
+  write("time_s,position_m,force_N", [](int i) { return text(i) + "," + text(3.0 * i) + "," + text(i); });
+  ForceCurveConfig config;
+  config.position_of = "base";
+  EXPECT_NE(errorOf(config).find("needs a column of the deflection, or --spring-constant"), std::string::npos);
+  config.spring_constant = 1;
+  EXPECT_NEAR(readForceCurve(path_, config).position[10], 20, 1e-9);
+}
+
+TEST_F(ForceCurveFile, TakesTheSegmentThatIsNamed) {
+  for (const char* word : {"Extend", "1"}) {
+    int row = 0;
+    write("time_s,height_m,force_N,segment",
+          [&](int i) { return text(i) + "," + text(i) + "," + text(i) + "," + (row++ < 100 ? word : "2"); });
+    ForceCurveConfig config;
+    config.segment = word;
+    EXPECT_EQ(readForceCurve(path_, config).size(), 100u) << word;
+    config.segment = "3";
+    EXPECT_NE(errorOf(config).find("has no such text, but "), std::string::npos) << errorOf(config);
+  }
+}
+
 TEST_F(ForceCurveFile, TakesColumnsByNameOrNumber) {
   write("a,b,c", [](int i) { return text(i) + "," + text(3.0 * i) + "," + text(i); });
   ForceCurveConfig config;

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <random>
 
 #include "base/errors.h"
 #include "cell/family/family_cell.h"
@@ -138,6 +141,27 @@ TEST(IdentifiedScene, HasWhatWasFound) {
   EXPECT_NEAR(scene.cell.layers[1].material.young_modulus, found.find("core_modulus")->value * modulus, 1e-3 * modulus);
   EXPECT_EQ(scene.needle.tip.radius, loadScene(kZona).needle.tip.radius);
   std::remove(path.c_str());
+}
+
+/// 120 samples in contact behind an approach of any length, with and without a drift of the sensor.
+TEST(IdentifiedCurve, SparesAShortContactBehindALongApproach) {
+  for (const std::size_t far : {3000, 12000, 150000}) {
+    for (const double drift : {0.0, 1e-12}) {  // N a sample
+      std::mt19937 random(3);
+      std::normal_distribution<double> normal;
+      ForceCurve curve;
+      for (std::size_t i = 0; i < far + 120; ++i) {
+        const double sample = static_cast<double>(i), depth = 5e-9 * (sample - static_cast<double>(far));
+        curve.time.push_back(1e-3 * sample);
+        curve.position.push_back(depth);
+        curve.force.push_back(drift * sample + 1e-10 * normal(random) + (depth > 0 ? 20 * std::pow(depth, 1.5) : 0));
+      }
+      const ForceCurve left = identifiedCurve(curve);
+      EXPECT_LE(left.size(), 2000u);
+      EXPECT_GE(std::count_if(left.position.begin(), left.position.end(), [](double x) { return x > 0; }), 50)
+          << far << " samples before the contact, drift " << drift;
+    }
+  }
 }
 
 /// Real records; see the variable's folder for where they come from.

@@ -83,6 +83,11 @@ TEST(CrestBeforePuncture, IsTheHighestSampleBeforeASuddenFall) {
   const auto crest = crestBeforePuncture(path.position, force);
   ASSERT_TRUE(crest);
   EXPECT_NEAR(static_cast<double>(*crest), 399, 3);
+  // The force that comes behind a puncture may be any number of times greater.
+  for (std::size_t i = 0; i < force.size(); ++i) force[i] = 1e-9 * (i < 300 ? i : 100 + 6 * (i - 300.0));
+  const auto early = crestBeforePuncture(path.position, force);
+  ASSERT_TRUE(early);
+  EXPECT_NEAR(static_cast<double>(*early), 299, 3);
   // A fall over a third of the way is a drift, or a cell that relaxes.
   for (std::size_t i = 0; i < force.size(); ++i) force[i] = 1e-9 * (i < 320 ? i : 320 - 0.6 * (i - 320.0));
   EXPECT_FALSE(crestBeforePuncture(path.position, force));
