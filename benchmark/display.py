@@ -18,7 +18,6 @@ import threading
 import time
 from pathlib import Path
 
-import yaml
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / 'src' / 'tools'))
@@ -26,6 +25,7 @@ sys.path.insert(0, str(ROOT / 'benchmark'))
 
 import full_solution  # noqa: E402
 import realtime  # noqa: E402
+import yaml_file  # noqa: E402
 from demo_session import DemoSession, SessionError  # noqa: E402
 from processes import Child, wait_until  # noqa: E402
 from rviz_view import RvizError, RvizView  # noqa: E402
@@ -128,7 +128,7 @@ class DisplayNode:
 
     def __init__(self, rate, cut, logs):
         import rospy
-        settings = yaml.safe_load((ROOT / 'config' / 'display.yaml').read_text(encoding='utf-8'))
+        settings = yaml_file.read(ROOT / 'config' / 'display.yaml')
         rospy.set_param('/display', {**settings, 'rate': rate, 'section': cut})
         self._process = Child(['nice', '-n', '10', 'rosrun', 'cell_microinjection', 'display', f'/cell/state:={SURFACE}'],
                               logs / 'display.log')

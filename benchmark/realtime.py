@@ -23,6 +23,7 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / 'src' / 'tools'))
 
 import full_solution  # noqa: E402
+import yaml_file  # noqa: E402
 from demo_session import DemoSession, SessionError  # noqa: E402
 from processes import wait_until  # noqa: E402
 from rviz_view import RvizError, RvizView, write_console  # noqa: E402
@@ -53,7 +54,7 @@ def say(text):
 
 def write_motion(path, seconds):
     """Writes a hand motion whose path to the cell and back is repeated until `seconds` are over."""
-    motion = yaml.safe_load((ROOT / 'config' / 'hand_motions' / 'indent_and_retract.yaml').read_text(encoding='utf-8'))
+    motion = yaml_file.read(ROOT / 'config' / 'hand_motions' / 'indent_and_retract.yaml')
     path_of_hand = motion['path']
     free = 1 + max(number for number, waypoint in enumerate(path_of_hand) if waypoint.get('clutch'))
     again = path_of_hand[free:]  # begins and ends where the clutch was released

@@ -42,6 +42,12 @@ class HostsFile(unittest.TestCase):
         with self.assertRaisesRegex(hosts_file.HostsError, '--host = moon: must be one of rig, haptic, solver'):
             hosts.named('moon')
 
+    def test_numbers_are_those_of_the_programs(self):
+        text = '{master: a, clock_limit: %s, hosts: {a: {address: 1.1.1.1}}}'
+        for number, value in (('5e-3', 0.005), ('1e-06', 1e-6), ('.01', 0.01), ('5.0E-3', 0.005)):
+            self.assertEqual(self.load(text % number).clock_limit, value)
+        self.refused(text % '1:30', 'clock_limit = 1:30: must be of type float')
+
     def test_all_errors_are_named(self):
         self.refused('{master: a, hosts: {a: {address: rig.lab, colour: red}, b: {nodes: [x]}}, speed: 3}',
                      'speed: unknown key', 'hosts/a/colour: unknown key', 'address = rig.lab: must be an IP address',
@@ -55,6 +61,8 @@ class HostsFile(unittest.TestCase):
             self.refused('{master: a, hosts: {a: {address: 1.1.1.1, env_loader: %s}}}' % loader,
                          f'hosts/a/env_loader = {loader}: must be an absolute path')
         self.refused('[]', 'must be a YAML map')
+        self.refused('{master: a, master: b}', 'master: is there twice', 'line 1')
+        self.refused('master: a\nclock_limit: 010\n', '010: must be written without the leading zero', 'line 2')
         self.refused('{master: [', 'while parsing')
 
     def test_by_ssh_every_other_host_needs_a_loader(self):

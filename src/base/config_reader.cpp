@@ -1,8 +1,10 @@
 #include "base/config_reader.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <sstream>
 
@@ -12,11 +14,40 @@ namespace microinjection {
 
 namespace {
 
-/// Replaces control characters by their codes. A carriage return would hide the text before it on a
-/// terminal.
+/// Characters that look like a blank, like nothing or like a minus, and are none in YAML.
+struct Deceptive {
+  const char* bytes;
+  const char* name;
+};
+constexpr Deceptive kDeceptive[] = {
+    {"\xc2\xa0", "no-break space U+00A0"},       {"\xe2\x80\x87", "figure space U+2007"},
+    {"\xe2\x80\x89", "thin space U+2009"},       {"\xe2\x80\xaf", "narrow no-break space U+202F"},
+    {"\xe2\x80\x8b", "zero width space U+200B"}, {"\xef\xbb\xbf", "byte order mark U+FEFF"},
+    {"\xe2\x88\x92", "minus sign U+2212"}};
+
+const Deceptive* deceptiveAt(const std::string& text, std::size_t at) {
+  for (const Deceptive& each : kDeceptive)
+    if (text.compare(at, std::string(each.bytes).size(), each.bytes) == 0) return &each;
+  return nullptr;
+}
+
+bool isDeceptive(const std::string& text) {
+  for (std::size_t i = 0; i < text.size(); ++i)
+    if (deceptiveAt(text, i)) return true;
+  return false;
+}
+
+/// Replaces control characters by their codes, and deceptive ones by their names. A carriage return would hide the text
+/// before it on a terminal.
 std::string visible(const std::string& text) {
   std::string shown;
-  for (const char each : text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (const Deceptive* deceptive = deceptiveAt(text, i)) {
+      shown += std::string("<") + deceptive->name + ">";
+      i += std::string(deceptive->bytes).size() - 1;
+      continue;
+    }
+    const char each = text[i];
     const auto code = static_cast<unsigned char>(each);
     char escaped[8];
     std::snprintf(escaped, sizeof escaped, code < 0x20 || code == 0x7f ? "\\x%02x" : "%c", code);
@@ -28,6 +59,35 @@ std::string visible(const std::string& text) {
 std::string lineOf(const YAML::Mark& mark) {
   return mark.is_null() ? std::string() : ", line " + std::to_string(mark.line + 1);
 }
+
+/// Where a file that is no YAML has a tab before a key, or a character that looks like a blank: "; line 3 has a tab".
+std::string whereDeceptive(const std::string& path) {
+  std::ifstream file(path);
+  std::string line;
+  for (int number = 1; std::getline(file, line); ++number) {
+    const std::string text = line.substr(0, line.find('#'));
+    const std::size_t start = std::min(text.find_first_not_of(" \t"), text.size());
+    const bool has_tab = text.find('\t') < start && start < text.size();
+    if (has_tab) return "; line " + std::to_string(number) + " begins with a tab: must be spaces";
+    for (std::size_t i = 0; i < text.size(); ++i) {
+      const Deceptive* deceptive = deceptiveAt(text, i);
+      if (deceptive && (number > 1 || i > 0))
+        return "; line " + std::to_string(number) + " has a " + deceptive->name + ": must be a plain character";
+    }
+  }
+  return "";
+}
+
+/// A number of digits alone that begins with 0: 010 is 8 in YAML 1.1, and 10 in YAML 1.2.
+bool hasLeadingZero(const YAML::Node& node) {
+  if (!node.IsScalar()) return false;
+  const std::string& text = node.Scalar();
+  const std::size_t sign = text.find_first_of("+-") == 0 ? 1 : 0;
+  return text.size() > sign + 1 && text[sign] == '0' &&
+         text.find_first_not_of("0123456789_", sign) == std::string::npos;
+}
+
+constexpr char kNoLeadingZero[] = "must be written without the leading zero: some programs would read it as octal";
 
 /// Finds keys that are in one map twice, and values without an end: an alias can contain itself.
 class DuplicateSearch {
@@ -88,7 +148,7 @@ YAML::Node loadMap(const std::string& path) {
   } catch (const YAML::BadFile&) {
     throw ConfigError(path + ": cannot be read");
   } catch (const YAML::ParserException& exception) {
-    throw ConfigError(path + ": " + exception.what());
+    throw ConfigError(path + ": " + exception.what() + whereDeceptive(path));
   }
 }
 
@@ -157,8 +217,10 @@ YAML::Node ConfigReader::any(const std::string& key) { return find(key, kOptiona
 
 std::string ConfigReader::valueText(const std::string& key) const {
   if (!has(key)) return "";
+  const YAML::Node node = static_cast<const YAML::Node&>(level_->map)[key];
+  if (node.IsScalar() && isDeceptive(node.Scalar())) return " = " + visible(node.Scalar());
   YAML::Emitter out;
-  out << YAML::Flow << static_cast<const YAML::Node&>(level_->map)[key];
+  out << YAML::Flow << node;
   return std::string(" = ") + visible(out.c_str());
 }
 
@@ -170,6 +232,7 @@ void ConfigReader::number(const std::string& key, double& value, const Range& ra
   const YAML::Node node = find(key, presence);
   if (!node.IsDefined()) return;
   double read = 0;
+  if (hasLeadingZero(node)) return error(key, kNoLeadingZero);
   if (!node.IsScalar() || !YAML::convert<double>::decode(node, read)) return error(key, "must be a number");
   if (!range.contains(read)) return error(key, "must be a number in " + range.text());
   value = read;
@@ -179,6 +242,7 @@ void ConfigReader::integer(const std::string& key, int& value, const Range& rang
   const YAML::Node node = find(key, presence);
   if (!node.IsDefined()) return;
   int read = 0;
+  if (hasLeadingZero(node)) return error(key, kNoLeadingZero);
   if (!node.IsScalar() || !YAML::convert<int>::decode(node, read)) return error(key, "must be an integer");
   if (!range.contains(read)) return error(key, "must be an integer in " + range.text());
   value = read;
@@ -220,6 +284,7 @@ void ConfigReader::vector(const std::string& key, Eigen::Ref<Eigen::VectorXd> va
   if (!node.IsSequence() || static_cast<Eigen::Index>(node.size()) != value.size()) return error(key, wanted);
   Eigen::VectorXd read(value.size());
   for (Eigen::Index i = 0; i < value.size(); ++i) {
+    if (hasLeadingZero(node[i])) return error(key, kNoLeadingZero);
     if (!YAML::convert<double>::decode(node[i], read[i]) || !range.contains(read[i])) return error(key, wanted);
   }
   value = read;
@@ -242,6 +307,7 @@ void ConfigReader::numbers(const std::string& key, std::vector<double>& values, 
   const bool some = node.IsSequence() && node.size() > 0;
   Eigen::VectorXd read(some ? static_cast<Eigen::Index>(node.size()) : 0);
   for (Eigen::Index i = 0; i < read.size(); ++i) {
+    if (hasLeadingZero(node[i])) return error(key, kNoLeadingZero);
     const bool good = YAML::convert<double>::decode(node[i], read[i]) && range.contains(read[i]);
     if (!good) return error(key, "must be a list of numbers in " + range.text());
   }

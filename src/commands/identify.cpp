@@ -11,6 +11,7 @@
 #include "base/atomic_file.h"
 #include "base/errors.h"
 #include "base/exit_status.h"
+#include "base/plausible.h"
 #include "base/standard_output.h"
 #include "cell/identification/contact_guess.h"
 #include "cell/identification/family_law.h"
@@ -57,8 +58,8 @@ double depthOf(const ForceCurve& curve) {
 bool isDetermined(const Identification& found) {
   const Estimate* const open = found.undetermined();
   if (!open) return true;
-  std::cerr << "identify: " << open->name << " = " << open->value << ' ' << open->unit << ", interval [" << open->low << ", "
-            << open->high << "]: the record does not determine it: no scene is written\n";
+  std::cerr << "identify: " << open->name << " = " << open->value << ' ' << open->unit << ", interval [" << open->low
+            << ", " << open->high << "]: the record does not determine it: no scene is written\n";
   return false;
 }
 
@@ -90,6 +91,12 @@ int run(int argc, char** argv) {
   const IdentifyArguments& arguments = *parsed;
   std::optional<Scene> scene;
   if (!arguments.scene.empty()) scene = loadScene(arguments.scene);
+  if (scene && arguments.point) {
+    ConfigErrors errors;
+    PlausibleRange{"m", Range::closed(0, scene->cell.diameter())}.require("--point (DEPTH)", arguments.point->depth,
+                                                                          errors);
+    errors.throwAny();
+  }
   if (arguments.point) return fitPoint(arguments, scene);
   const ForceCurve curve = identifiedCurve(readForceCurve(arguments.record, arguments.curve));
   std::vector<std::shared_ptr<ElasticLaw>> laws;

@@ -11,6 +11,7 @@
 #include "base/config_errors.h"
 #include "base/errors.h"
 #include "base/output_files.h"
+#include "base/plausible.h"
 #include "base/worker_processes.h"
 
 namespace microinjection {
@@ -57,11 +58,14 @@ std::vector<std::string> split(const std::string& text) {
   return items;
 }
 
-void requirePositive(const std::string& option, double value) {
-  if (std::isfinite(value) && value > 0) return;
-  std::ostringstream message;
-  message << "--" << option << " = " << value << ": must be a number > 0";
-  throw ConfigError(message.str());
+/// Throws ConfigError unless the value is above 0 and can be meant.
+void requirePlausible(const PlausibleRange& range, const std::string& option, double value) {
+  ConfigErrors errors;
+  if (Range::positive().contains(value))
+    range.require("--" + option, value, errors);
+  else
+    errors.require(false, "--" + option, value, "", "a number > 0");
+  errors.throwAny();
 }
 
 /// The families that are installed with this program, or else those of the working directory.
@@ -85,6 +89,9 @@ void addColumn(const std::string& text, ForceCurveConfig& config) {
   config.columns[text.substr(0, equals)] = text.substr(equals + 1);
 }
 
+constexpr PlausibleRange kDepthError{"m", {1e-12, 1e-3}};
+constexpr PlausibleRange kReadingError{"", {1e-6, 1}};  // relative
+
 MeasuredPoint parsePoint(const std::string& text, double reading_error, double depth_error) {
   MeasuredPoint point;
   int used = 0;
@@ -92,10 +99,11 @@ MeasuredPoint parsePoint(const std::string& text, double reading_error, double d
   if (read != 2 || static_cast<std::size_t>(used) != text.size()) {
     throw ConfigError("--point = " + text + ": must be two numbers DEPTH,FORCE (m, N)");
   }
-  requirePositive("point", point.depth);
-  requirePositive("point", point.force);
-  requirePositive("reading-error", reading_error);
+  requirePlausible(plausible::kDepth, "point (DEPTH)", point.depth);
+  requirePlausible(plausible::kForce, "point (FORCE)", point.force);
+  requirePlausible(kReadingError, "reading-error", reading_error);
   if (!(std::isfinite(depth_error) && depth_error >= 0)) throw ConfigError("--depth-error: must be a number >= 0 (m)");
+  if (depth_error > 0) requirePlausible(kDepthError, "depth-error", depth_error);
   point.reading_error = reading_error;
   point.depth_error = depth_error;
   return point;
@@ -129,7 +137,8 @@ std::optional<IdentifyArguments> parseIdentifyArguments(int argc, char** argv) {
   add("column", po::value(&columns), "QUANTITY=NAME:UNIT; QUANTITY time, position, deflection or force");
   add("position-of", po::value(&arguments.curve.position_of)->default_value("auto"),
       "whose the position is: tip, base of a lever that bends, or auto: by the column's name");
-  add("spring-constant", po::value(&arguments.curve.spring_constant), "N/m, of the lever, where the record has no deflection");
+  add("spring-constant", po::value(&arguments.curve.spring_constant),
+      "N/m, of the lever, where the record has no deflection");
   add("from", po::value(&arguments.curve.from), "first row that is used, as 120, or time, as 1.5s");
   add("to", po::value(&arguments.curve.to), "last one");
   add("segment", po::value(&arguments.curve.segment), "text of the column segment that is used; default: the approach");
@@ -158,8 +167,11 @@ std::optional<IdentifyArguments> parseIdentifyArguments(int argc, char** argv) {
     if (!arguments.residuals.empty()) throw ConfigError("--residuals: needs --record");
     arguments.point = parsePoint(point, reading_error, depth_error);
   }
-  for (const char* option : {"tip-radius", "half-angle", "spring-constant"}) {
-    if (values.count(option) != 0) requirePositive(option, values[option].as<double>());
+  const std::vector<std::pair<std::string, PlausibleRange>> ranges = {{"tip-radius", plausible::kTipRadius},
+                                                                      {"half-angle", plausible::kConeAngle},
+                                                                      {"spring-constant", plausible::kStiffness}};
+  for (const auto& [option, range] : ranges) {
+    if (values.count(option) != 0) requirePlausible(range, option, values[option].as<double>());
   }
   if (values.count("poisson-ratio") != 0 && !(poisson_ratio > -1 && poisson_ratio <= 0.5)) {
     throw ConfigError("--poisson-ratio = " + std::to_string(poisson_ratio) + ": must be in (-1, 0.5]");

@@ -1,4 +1,5 @@
 #include "base/errors.h"
+#include "base/plausible.h"
 #include "commands/indent_arguments.h"
 
 namespace microinjection {
@@ -43,11 +44,38 @@ void checkTensegrity(const IndentArguments& arguments, Refusals& refusals) {
   }
 }
 
+/// Refuses an option with a value that is not in the range.
+void require(const PlausibleRange& range, const std::string& option, double value, const std::string& because,
+             Refusals& refusals) {
+  if (!range.range.contains(value)) refusals.add(option, "must be " + range.allowed(value) + because);
+}
+
+void checkMotion(const Scene& scene, const Indenting& indenting, Refusals& refusals) {
+  const double diameter = scene.cell.diameter();
+  const PlausibleRange inside{"m", Range::closed(0, diameter)};
+  const std::string why = " (the cell's diameter is the most)";
+  for (const double depth : indenting.depths) {
+    if (inside.range.contains(depth)) continue;
+    require(inside, "depths", depth, why, refusals);
+    break;
+  }
+  require(inside, "lateral", indenting.lateral.cwiseAbs().maxCoeff(), why, refusals);
+  for (const double depth : indenting.withdrawal) {
+    if (plausible::kDistance.range.contains(depth)) continue;
+    require(plausible::kDistance, "withdraw", depth, "", refusals);
+    break;
+  }
+  if (indenting.speed) require(plausible::kSpeed, "speed", *indenting.speed, "", refusals);
+  require(plausible::kTime, "hold", indenting.hold, "", refusals);
+}
+
 }  // namespace
 
 void IndentArguments::requireFit(const Scene& scene) const {
   const bool own_model = !membrane && (live || converged.model == ConvergedForceConfig::Model::kAuto);
   Refusals refusals(*this);
+  checkMotion(scene, indenting, refusals);
+  refusals.throwAny();
   if (membrane) checkMembrane(scene, *this, refusals);
   if (scene.cell.tensegrity && own_model) {
     checkTensegrity(*this, refusals);

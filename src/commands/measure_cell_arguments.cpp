@@ -6,6 +6,7 @@
 #include "base/config_errors.h"
 #include "base/errors.h"
 #include "base/output_files.h"
+#include "base/plausible.h"
 #include "base/standard_output.h"
 #include "vision/camera/image_file.h"
 
@@ -38,7 +39,7 @@ is not found or uncertain: no scene is written.
 )";
 
 void readVision(const std::string& path, VisionConfig& vision) {
-  ConfigReader reader(loadYamlMap(path), path);
+  ConfigReader reader = ConfigReader::ofFile(path);
   vision = VisionConfig::read(reader);
   reader.finish();
 }
@@ -81,7 +82,7 @@ std::optional<MeasureCellArguments> parseMeasureCellArguments(int argc, char** a
   if (!calibration.empty()) arguments.vision.calibration = calibration;
   ConfigErrors errors;
   errors.require(!arguments.input.empty(), "INPUT", "", "", "an image, a folder or a video");
-  if (given.count("pixel-size") > 0) errors.require(Range{0, 1e-4, true, false}, "--pixel-size", pixel_size, " m");
+  if (given.count("pixel-size") > 0) plausible::kPixelSize.require("--pixel-size", pixel_size, errors);
   errors.require(given.count("pixel-size") == 0 || calibration.empty(), "--calibration", calibration, "",
                  "left out with --pixel-size");
   errors.require(arguments.out.empty() || !arguments.scene.empty(), "--out", arguments.out, "",

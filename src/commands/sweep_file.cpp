@@ -5,6 +5,7 @@
 #include <sstream>
 #include <vector>
 
+#include "base/absolute_path.h"
 #include "base/cache_file.h"
 #include "base/config_reader.h"
 #include "base/csv_field.h"
@@ -46,17 +47,17 @@ std::string flow(const YAML::Node& node) {
 }  // namespace
 
 SweepFile::SweepFile(const std::string& path) : path_(path) {
-  const YAML::Node file = loadYamlMap(path);
-  ConfigReader reader(file, path);
+  ConfigReader reader = ConfigReader::ofFile(path);
   std::string scene;
   reader.text("scene", scene, kRequired);
   design_ = SweepDesign::read(reader);
   readIndentation(reader.section("indentation", kRequired), indentation_);
   reader.finish();
-  scene_ = loadYamlMap((std::filesystem::path(path).parent_path() / scene).string());
-  indentation_text_ = flow(file["indentation"]);
+  scene_ = loadYamlMap(absolutePath(scene, std::filesystem::path(path).parent_path().string()));
+  const YAML::Node indentation = reader.any("indentation");
+  indentation_text_ = flow(indentation);
   indentation_.prefix = "indentation/";
-  for (const auto& option : file["indentation"]) indentation_.given[option.first.Scalar()] = flow(option.second);
+  for (const auto& option : indentation) indentation_.given[option.first.Scalar()] = flow(option.second);
   requireSomeTaskFits();
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/config_reader.h"
 #include "base/errors.h"
+#include "base/plausible.h"
 #include "session/parameter_tree.h"
 
 namespace microinjection {
@@ -38,7 +39,7 @@ class SceneReader {
     facts.radius = layers.front().radius;
     facts.modulus = is_tensegrity ? CellFacts::kModulus : feltModulus(layers);
     facts.puncture_force = readPunctureForce();
-    facts.tip_radius = positive("needle/tip/radius");
+    facts.tip_radius = positive(plausible::kTipRadius, "needle/tip/radius");
     facts.mouth_radius = optional("holding_pipette/contact_radius");
     if (!errors_.empty()) throw ConfigError(errors_);
     return facts;
@@ -52,14 +53,16 @@ class SceneReader {
 
   std::vector<Layer> readLayers(bool is_tensegrity) {
     if (!isList("cell/layers")) {
-      const double modulus = is_tensegrity ? CellFacts::kModulus : positive("cell/material/young_modulus");
-      return {{positive("cell/diameter") / 2, modulus}};
+      const double modulus =
+          is_tensegrity ? CellFacts::kModulus : positive(plausible::kCellModulus, "cell/material/young_modulus");
+      return {{positive(plausible::kCellDiameter, "cell/diameter") / 2, modulus}};
     }
     std::vector<Layer> layers;
     const YAML::Node list = parameterAt(scene_, "cell/layers");
     for (std::size_t i = 0; i < list.size(); ++i) {
       const std::string name = "cell/layers/" + std::to_string(i) + "/";
-      layers.push_back({positive(list[i], "outer_radius", name), positive(list[i], "material/young_modulus", name)});
+      layers.push_back({positive(i == 0 ? plausible::kCellRadius : plausible::kLength, list[i], "outer_radius", name),
+                        positive(plausible::kCellModulus, list[i], "material/young_modulus", name)});
     }
     return layers;
   }
@@ -80,23 +83,31 @@ class SceneReader {
     const YAML::Node node = parameterAt(scene_, path);
     return node.IsDefined() ? number(node, path) : 0;
   }
-  double positive(const std::string& path) { return positive(scene_, path, ""); }
-  double positive(const YAML::Node& map, const std::string& path, const std::string& prefix) {
+  double positive(const PlausibleRange& range, const std::string& path) { return positive(range, scene_, path, ""); }
+  double positive(const PlausibleRange& range, const YAML::Node& map, const std::string& path,
+                  const std::string& prefix) {
     const YAML::Node node = parameterAt(map, path);
     if (!node.IsDefined()) {
       errors_.push_back("scene " + path_ + ": " + prefix + path + " is missing; must be a number above 0");
       return 1;
     }
-    const double value = number(node, prefix + path);
+    double value = range.range.low;
+    if (!read(node, prefix + path, value)) return 1;
+    const std::string text = "scene " + path_ + ": " + prefix + path + " = " + numberText(value) + ": must be ";
     if (!(value > 0))
-      errors_.push_back("scene " + path_ + ": " + prefix + path + " = " + numberText(value) + ": must be above 0");
+      errors_.push_back(text + "above 0");
+    else if (!range.range.contains(value))
+      errors_.push_back(text + range.allowed(value));
     return value > 0 ? value : 1;
   }
   double number(const YAML::Node& node, const std::string& path) {
-    double value = 0;
-    if (node.IsScalar() && YAML::convert<double>::decode(node, value) && std::isfinite(value)) return value;
+    double value = 1;
+    return read(node, path, value) ? value : 1;
+  }
+  bool read(const YAML::Node& node, const std::string& path, double& value) {
+    if (node.IsScalar() && YAML::convert<double>::decode(node, value) && std::isfinite(value)) return true;
     errors_.push_back("scene " + path_ + ": " + path + ": must be a number");
-    return 1;
+    return false;
   }
 
   YAML::Node scene_;

@@ -7,12 +7,6 @@ namespace microinjection {
 
 namespace fs = std::filesystem;
 
-std::string absolutePath(const std::string& path, const std::string& folder) {
-  const char* home = std::getenv("HOME");
-  if (home && path.rfind("~/", 0) == 0) return (fs::path(home) / path.substr(2)).lexically_normal().string();
-  return fs::absolute(fs::path(folder) / path).lexically_normal().string();
-}
-
 std::string pathOfFileOrName(const std::string& text, const std::string& folder, const std::string& package,
                              const std::string& below) {
   if (text.find_first_of("/.") != std::string::npos) return absolutePath(text, folder);

@@ -2,10 +2,9 @@
 
 #include <string>
 
-namespace microinjection {
+#include "base/absolute_path.h"
 
-/// A path as its file means it: from `folder`, or from the home folder where it begins with ~/.
-std::string absolutePath(const std::string& path, const std::string& folder);
+namespace microinjection {
 
 /// The path of NAME, package/`below`/NAME.yaml, or, where `text` has a slash or a point, the path that it is.
 std::string pathOfFileOrName(const std::string& text, const std::string& folder, const std::string& package,

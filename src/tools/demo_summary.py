@@ -2,7 +2,7 @@
 import csv
 from types import SimpleNamespace
 
-import yaml
+import yaml_file
 
 
 def _table(rows):
@@ -30,8 +30,7 @@ def layers(path):
     """Returns the names of the cell's membranes, outermost first; none where there is no summary."""
     if not path.is_file():
         return []
-    with open(path, encoding='utf-8') as file:
-        return yaml.safe_load(file).get('layers') or []
+    return yaml_file.read(path).get('layers') or []
 
 
 def injection(path):
@@ -44,21 +43,18 @@ def injection(path):
 
 def training(path):
     """Returns a training session's score as text for people."""
-    with open(path, encoding='utf-8') as file:
-        told = yaml.safe_load(file)
+    told = yaml_file.read(path)
     complete = told['outcome'] == 'complete'
     worth = f'{told["score"]:.0f} of 100 points' if complete else f'{told["outcome"]}: {told["reason"]}'
     rows = [('measure', '', 'value', 'reference', 'points', 'of')]
-    # PyYAML takes 1e-06, without a point, for a word.
-    rows += [(name, '', *(f'{float(row[key]):.3g}' for key in ('value', 'reference', 'points', 'of')))
+    rows += [(name, '', *(f'{row[key]:.3g}' for key in ('value', 'reference', 'points', 'of')))
              for name, row in told['measures'].items()]
     return '\n'.join([f'Training of {told["operator"]}: {worth}'] + _table(rows)) + '\n'
 
 
 def text(path):
     """Returns the summary as text for people."""
-    with open(path, encoding='utf-8') as file:
-        summary = yaml.safe_load(file)
+    summary = yaml_file.read(path)
     clock = {'wall': 'wall time', 'virtual': 'virtual time'}.get(summary['clock'], summary['clock'])
     lines = ['', f'Session of {_figure(summary["duration_s"])} s of {clock}. Steps that each node really did:']
     rows = [('node', 'topic', 'steps', 'rate (Hz)', 'median interval (ms)', '99 % (ms)')]

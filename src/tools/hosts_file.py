@@ -5,6 +5,8 @@ from dataclasses import dataclass, field
 
 import yaml
 
+import yaml_file
+
 KEYS = {'master': str, 'clock_limit': (int, float), 'hosts': dict}
 HOST_KEYS = {'address': str, 'nodes': list, 'user': str, 'env_loader': str}
 LARGEST_CLOCK_LIMIT = 0.025  # s: half of the shortest time-out
@@ -74,8 +76,7 @@ def _check_host(where, host):
 def load(path):
     """Returns Hosts. Raises HostsError with all errors at once."""
     try:
-        with open(path, encoding='utf-8') as file:
-            values = yaml.safe_load(file)
+        values = yaml_file.read(path)
     except (OSError, yaml.YAMLError) as error:
         raise HostsError(f'{path}: {error}') from None
     if not isinstance(values, dict):

@@ -14,7 +14,7 @@ OUT = programs.required("out", config, "FOLDER")
 PROGRAM = programs.find("sweep", config)
 BLOCK = int(config.get("block", 1))
 # A change of either makes the jobs run again; tasks whose scene is the same return at once.
-FILES = [SWEEP, (SWEEP.parent / yaml.safe_load(SWEEP.read_text())["scene"]).resolve()]
+FILES = [SWEEP, (SWEEP.parent / Path(yaml.safe_load(SWEEP.read_text())["scene"]).expanduser()).resolve()]
 
 
 def first_tasks():

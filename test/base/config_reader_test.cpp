@@ -206,6 +206,55 @@ TEST(ConfigReader, OfAFileRefusesValuesWithoutAnEnd) {
   }
 }
 
+/// 010 is 8 in YAML 1.1 and 10 in YAML 1.2.
+TEST(ConfigReader, RefusesALeadingZeroWhereverThereIsANumber) {
+  const std::string path = file("samples: 010\nlength: 007\nat: [1, -02]\ndepths: [+03]\ngood: [0, 0.10, 0e1, -0]\n");
+  ConfigReader reader = ConfigReader::ofFile(path);
+  int samples = 1;
+  double length = 0;
+  Eigen::VectorXd at(2), good(4);
+  std::vector<double> depths;
+  reader.integer("samples", samples);
+  reader.number("length", length);
+  reader.vector("at", at);
+  reader.numbers("depths", depths);
+  reader.vector("good", good);
+  const std::string text = errorsOf([&] { reader.finish(); });
+  for (const char* part : {", line 1: samples = 010: must be written without the leading zero",
+                           "line 2: length = 007: ", "line 3: at = [1, -02]: ", "line 4: depths = [+03]: "})
+    EXPECT_NE(text.find(part), std::string::npos) << part << "\nis not in\n" << text;
+  EXPECT_EQ(text.find("good"), std::string::npos) << text;
+  EXPECT_EQ(samples, 1);
+}
+
+TEST(ConfigReader, NamesCharactersThatOnlyLookLikeABlankOrAMinus) {
+  const std::string path = file(
+      "length: 6e-6\xc2\xa0\nsize: 6e\xe2\x88\x92"
+      "6\n\xc2\xa0width: 1\n");
+  ConfigReader reader = ConfigReader::ofFile(path);
+  double length = 0;
+  reader.number("length", length);
+  reader.number("size", length);
+  const std::string text = errorsOf([&] { reader.finish(); });
+  for (const char* part :
+       {", line 1: length = 6e-6<no-break space U+00A0>: must be a number",
+        "line 2: size = 6e<minus sign U+2212>6: must be a number", "line 3: <no-break space U+00A0>width: unknown key"})
+    EXPECT_NE(text.find(part), std::string::npos) << part << "\nis not in\n" << text;
+}
+
+TEST(LoadYamlMap, NamesTheCharacterThatMakesAFileNoYaml) {
+  const auto refused = [](const std::string& text) {
+    const std::string path = file(text);
+    return errorsOf([&] { loadYamlMap(path); });
+  };
+  EXPECT_NE(refused("cell:\n\tdiameter: 6e-5\n  a: 1\n").find("; line 2 begins with a tab"), std::string::npos);
+  EXPECT_NE(refused("cell:\n  diameter:\xc2\xa0"
+                    "6e-5\n  a: 1\n")
+                .find("; line 2 has a no-break space U+00A0"),
+            std::string::npos);
+  EXPECT_EQ(refused("# 6\xc2\xa0um\ncell: [\n").find("no-break"), std::string::npos) << "a comment may have it";
+}
+
 TEST(LoadYamlMap, NamesTheFile) {
   EXPECT_NE(errorsOf([] { loadYamlMap("/no/such.yaml"); }).find("/no/such.yaml: cannot be read"), std::string::npos);
   const std::string path = testing::TempDir() + "bad.yaml";

@@ -91,6 +91,27 @@ TEST_F(IdentifyCommand, BadPointsAreRefused) {
   EXPECT_NE(both.err.find("--record, or else --point"), std::string::npos) << both.err;
 }
 
+TEST_F(IdentifyCommand, OptionsInAnotherUnitAreRefused) {
+  const std::string point =
+      " --reading-error 0.05 --model solution --scene " + std::string(kCells) + "mouse_oocyte.yaml";
+  for (const auto& [arguments, message] : std::vector<std::pair<std::string, std::string>>{
+           {"--record a.csv --model cone --half-angle 35",
+            "--half-angle = 35 rad: must be above 0 and below 1.571 rad; 35 "
+            "degrees would be 0.6109"},
+           {"--record a.csv --tip-radius 10", "--tip-radius = 10 m: must be 1e-8 .. 1e-3 m; 10 um would be 1e-5"},
+           {"--record a.csv --tip-radius -1", "--tip-radius = -1: must be a number > 0"},
+           {"--record a.csv --spring-constant 1e5", "--spring-constant = 100000 N/m: must be 1e-6 .. 1e4 N/m"},
+           {"--point 8,1e-6" + point, "--point (DEPTH) = 8 m: must be 1e-9 .. 5e-3 m; 8 um would be 8e-6"},
+           {"--point 8e-6,2" + point, "--point (FORCE) = 2 N: must be 1e-13 .. 1 N; 2 uN would be 2e-6"},
+           {"--point 80e-6,2e-6" + point, "--point (DEPTH) = 8e-05 m: must be 0 .. 5.6e-5 m"},
+           {"--point 8e-6,1e-6 --reading-error 5" + point.substr(point.find(" --model")),
+            "--reading-error = 5: must be 1e-6 .. 1; 5 % would be 0.05"}}) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.status, 2) << arguments;
+    EXPECT_NE(outcome.err.find(message), std::string::npos) << arguments << "\n" << outcome.err;
+  }
+}
+
 TEST_F(IdentifyCommand, TheForceOfATensegrityIsNoSolution) {
   const Outcome outcome = run("--point 8e-6,1e-6 --reading-error 0.05 --model solution --scene " + std::string(kCells) +
                               "mouse_oocyte_tensegrity.yaml");

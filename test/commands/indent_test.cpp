@@ -163,6 +163,11 @@ TEST_F(IndentCommand, RefusesBadUsageWithTheKeyAndWhatIsAllowed) {
       {"--scene scene.yaml --depths 1e-6 --model axisymmetric --lateral 1e-6,0", "lateral must be 0"},
       {"--scene scene.yaml --depths 1e-6 --withdraw 0 --model live",
        "--withdraw = 0: must be left out with --model = live"},
+      {"--scene scene.yaml --depths 1", "--depths = 1: must be 0 .. 5.6e-5 m; 1 um would be 1e-6"},
+      {"--scene scene.yaml --depths 1e-6,57e-6", "--depths = 1e-6,57e-6: must be 0 .. 5.6e-5 m (the cell's diameter"},
+      {"--scene scene.yaml --depths 1e-6 --lateral 1,0", "--lateral = 1,0: must be 0 .. 5.6e-5 m; 1 um would be 1e-6"},
+      {"--scene scene.yaml --depths 1e-6 --withdraw 0,-2", "--withdraw = 0,-2: must be -5e-3 .. 5e-3 m; -2 um"},
+      {"--scene scene.yaml --depths 1e-6 --speed 10", "--speed = 10: must be 1e-10 .. 1 m/s; 10 um/s would be 1e-5"},
       {"--scene scene.yaml --depths 1e-6 stray", "positional"},
       {"--scene scene.yaml --depths 1e-6 --csv scene.yaml/force.csv", "scene.yaml/force.csv: cannot be written"}};
   for (const auto& [arguments, message] : cases) {

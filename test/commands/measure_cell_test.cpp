@@ -85,6 +85,7 @@ TEST_F(MeasureCellCommand, RefusesBadUsage) {
            {"stack --pixel-size 0", "--pixel-size = 0"},
            {"stack --pixel-size nan", "--pixel-size"},
            {"stack --pixel-size 1", "--pixel-size = 1"},
+           {"stack --pixel-size 0.25", "--pixel-size = 0.25 m: must be 1e-9 .. 1e-4 m; 0.25 um would be 2.5e-7"},
            {"stack --pixel-size 1e-6 --far", "far"},
            {"stack --pixel-size 1e-6 --out a.yaml", "--scene"},
            {"stack --pixel-size 1e-6 --overlay a.txt", "--overlay"},

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <array>
+#include <cstdlib>
+#include <filesystem>
 #include <vector>
 
 #include "commands/command_test.h"
@@ -147,6 +149,7 @@ TEST_F(SweepTest, WhatNoTaskCanDoIsRefusedWhenTheFileIsRead) {
       {"tensegrity", "tolerance: 0.01, element: p2",
        "indentation/element = p2: must be left out for a scene of cell/model = tensegrity"},
       {"tensegrity", "tolerance: 0.01", "indentation/tolerance = 0.01: must be left out"},
+      {"scene", "speed: 10", "indentation/speed = 10: must be 1e-10 .. 1 m/s; 10 um/s would be 1e-5"},
       {"tensegrity", "model: spatial", "cell/model = tensegrity: must be continuum"}};
   for (const auto& [scene, options, message] : cases) {
     write("bad.yaml", "scene: " + scene + ".yaml\n" + keys + "indentation: {depths: [1e-6], " + options + "}\n");
@@ -171,8 +174,29 @@ TEST_F(SweepTest, BadUsageIsNamed) {
   std::string bad = kSweep;
   write("bad.yaml", bad.replace(bad.find("young_modulus"), 13, "young_modulis"));
   fails("--file bad.yaml --list", "bad.yaml: task 0: cell/material/young_modulis");
+  bad = kSweep;
+  write("bad.yaml", bad.replace(bad.find("40"), 2, "040"));
+  fails("--file bad.yaml --list", "bad.yaml, line 3: samples = 040: must be written without the leading zero");
+  bad = kSweep;
+  write("bad.yaml", bad.replace(bad.find("2e-6, 3e-6"), 4, "0002"));
+  fails("--file bad.yaml --list", "task 0: needle/tip/radius = 0002: must be written without the leading zero");
   EXPECT_EQ(run("--file sweep.yaml --list").status, 0);
   EXPECT_NE(run("--help").out.find("sweep --file FILE"), std::string::npos);
+}
+
+TEST_F(SweepTest, ThePathOfTheSceneIsFromTheFileOrFromHome) {
+  std::filesystem::create_directories(directory_ + "home/cells");
+  std::filesystem::create_directories(directory_ + "sweeps");
+  write("home/cells/scene.yaml", scene_);
+  const std::string home = std::getenv("HOME") ? std::getenv("HOME") : "";
+  setenv("HOME", (directory_ + "home").c_str(), 1);
+  for (const char* path : {"~/cells/scene.yaml", "../home/cells/scene.yaml"}) {
+    std::string sweep = kSweep;
+    write("sweeps/sweep.yaml", sweep.replace(sweep.find("scene.yaml"), 10, path));
+    const Outcome outcome = run("--file sweeps/sweep.yaml --list");
+    EXPECT_EQ(outcome.status, 0) << path << "\n" << outcome.err;
+  }
+  setenv("HOME", home.c_str(), 1);
 }
 
 }  // namespace

@@ -271,6 +271,15 @@ TEST_F(SessionFitTest, ASceneWithoutACellIsNamed) {
     EXPECT_NE(refused(scene).find("scene.yaml: "), std::string::npos) << scene << "\n" << refused(scene);
 }
 
+TEST_F(SessionFitTest, ACellInAnotherUnitIsNamed) {
+  EXPECT_NE(refused(oocyte("{force: 7.5e-6}", 56))
+                .find("scene.yaml: cell/diameter = 56.0: must be 1e-6 .. 5e-3 m; 56 um would be 5.6e-5"),
+            std::string::npos)
+      << refused(oocyte("{force: 7.5e-6}", 56));
+  EXPECT_NE(refused(large(1, 0.5)).find("cell/material/young_modulus = 0.5: must be 1 .. 1e7 Pa; 0.5 kPa would be 500"),
+            std::string::npos);
+}
+
 TEST_F(SessionFitTest, AUrdfThatCannotFollowIsNamed) {
   const auto refusal = [&](const std::string& urdf) {
     return refused(oocyte(), "", {"rig.urdf:=" + file("rig.urdf", urdf)});

@@ -6,6 +6,7 @@
 
 #include "base/config_reader.h"
 #include "cell/family/family_places.h"
+#include "cell/model/plausible_scene.h"
 #include "cell/model/scene_description.h"
 #include "cell/model/similarity.h"
 
@@ -29,7 +30,16 @@ void readParameters(ConfigReader& file, const std::string& key, int layers,
   }
 }
 
+void addMisfit(std::string& text, const std::string& misfit) { text += (text.empty() ? "" : ", ") + misfit; }
+
 }  // namespace
+
+std::string Family::Parameter::text(double value) const {
+  std::ostringstream out;
+  out.precision(3);
+  out << ratio->name << ' ' << value << " of [" << low << ", " << high << ']';
+  return out.str();
+}
 
 double Family::Parameter::coordinate(double value) const {
   if (!ratio->logarithmic) return (2 * value - low - high) / (high - low);
@@ -42,18 +52,16 @@ double Family::Parameter::value(double coordinate) const {
 }
 
 Family Family::load(const std::string& path) {
-  YAML::Node node = loadYamlMap(path);
-  const YAML::Node scene = node["scene"];  // has a reader of its own
-  node.remove("scene");
   Family family;
-  ConfigReader reader(node, path);
+  ConfigReader reader = ConfigReader::ofFile(path);
+  const YAML::Node scene = reader.any("scene");  // has a reader of its own
   reader.text("name", family.name_, ConfigReader::kRequired);
   if (!scene) reader.error("scene", "is missing");
   ConfigReader range = reader.section("range", ConfigReader::kRequired);
   range.number("angle", family.angle_, Range{0, 1.2, true, false}, ConfigReader::kRequired);
   range.number("deepest", family.deepest_, Range{0, 1, true, false}, ConfigReader::kRequired);
   range.number("half_depth_tip", family.half_depth_tip_, Range::positive(), ConfigReader::kRequired);
-  if (scene) family.scene_ = withoutDimension(parseScene(scene, path + ": scene"));
+  if (scene) family.scene_ = withoutDimension(parseDimensionlessScene(scene, path + ": scene"));
   const int layers = static_cast<int>(family.scene_.cell.layers.size());
   readParameters(reader, "parameters", layers, family.parameters_);
   readParameters(reader, "constants", layers, family.constants_);
@@ -79,21 +87,67 @@ std::optional<double> Family::takeRatio(const Ratio& ratio, Scene& scene) const 
   return value;
 }
 
-std::optional<Eigen::VectorXd> Family::coordinatesOf(const Scene& scene) const {
-  if (scene.cell.tensegrity || scene.cell.layers.size() != scene_.cell.layers.size()) return std::nullopt;
+std::optional<Eigen::VectorXd> Family::coordinatesOf(const Scene& scene, std::string* misfit) const {
+  std::string text;
+  const auto coordinates = coordinatesOf(scene, text);
+  if (misfit) *misfit = text;
+  return coordinates;
+}
+
+std::optional<Eigen::VectorXd> Family::coordinatesOf(const Scene& scene, std::string& misfit) const {
+  if (scene.cell.tensegrity) {
+    misfit = "the cell is a tensegrity";
+    return std::nullopt;
+  }
+  if (const std::size_t count = scene_.cell.layers.size(); scene.cell.layers.size() != count) {
+    misfit = std::to_string(scene.cell.layers.size()) +
+             (scene.cell.layers.size() == 1 ? " layer, not " : " layers, not ") + std::to_string(count);
+    return std::nullopt;
+  }
   Scene other = withoutDimension(Preparation::elastic(scene));
   Eigen::VectorXd coordinates(dimension());
   for (int i = 0; i < dimension(); ++i) {
-    const std::optional<double> value = takeRatio(*parameters_[i].ratio, other);
-    if (!value || (parameters_[i].ratio->logarithmic && !(*value > 0))) return std::nullopt;
+    const Ratio& ratio = *parameters_[i].ratio;
+    const std::optional<double> value = takeRatio(ratio, other);
+    if (!value) return addMisfit(misfit, ratio.name + std::string(" is not the same in all layers")), std::nullopt;
+    if (ratio.logarithmic && !(*value > 0)) return addMisfit(misfit, ratio.name + std::string(" is 0")), std::nullopt;
     coordinates[i] = parameters_[i].coordinate(*value);
   }
   for (const Parameter& constant : constants_) {
     const std::optional<double> value = takeRatio(*constant.ratio, other);
-    if (!value || *value < constant.low || *value > constant.high) return std::nullopt;
+    if (!value)
+      addMisfit(misfit, constant.ratio->name + std::string(" is not the same in all layers"));
+    else if (*value < constant.low || *value > constant.high)
+      addMisfit(misfit, constant.text(*value));
   }
-  if (describeCellAndTip(other) != describeCellAndTip(Preparation::elastic(scene_))) return std::nullopt;
-  return coordinates;
+  if (misfit.empty()) misfit = differenceFrom(other);
+  return misfit.empty() ? std::optional(coordinates) : std::nullopt;
+}
+
+/// What the family does not vary and a scene without dimension has otherwise; empty if there is nothing.
+std::string Family::differenceFrom(const Scene& scene) const {
+  const Scene own = Preparation::elastic(scene_);
+  if (describeCellAndTip(scene) == describeCellAndTip(own)) return "";
+  std::string text;
+  const auto compare = [&](const std::string& name, const auto& value, const auto& wanted) {
+    std::ostringstream out;
+    out.precision(3);
+    out << name << ' ' << value << ", not " << wanted;
+    if (value != wanted) addMisfit(text, out.str());
+  };
+  for (std::size_t i = 0; i < own.cell.layers.size(); ++i) {
+    const Scene::Layer &layer = scene.cell.layers[i], &wanted = own.cell.layers[i];
+    const std::string of = own.cell.layers.size() > 1 ? " of layer " + std::to_string(i) : "";
+    compare("material" + of, layer.material.model, wanted.material.model);
+    compare("poisson_ratio" + of, layer.material.poisson_ratio, wanted.material.poisson_ratio);
+    compare("surface_tension" + of, layer.surface_tension, wanted.surface_tension);
+  }
+  compare("tip", scene.needle.tip.shape, own.needle.tip.shape);
+  compare("contact", scene.needle.contact.mode, own.needle.contact.mode);
+  compare("friction", scene.needle.contact.friction, own.needle.contact.friction);
+  compare("holding_radius", scene.holding_pipette.contact_radius, own.holding_pipette.contact_radius);
+  compare("tip_radius", scene.needle.tip.radius, own.needle.tip.radius);
+  return text.empty() ? "the cell or the tip is of another kind" : text;
 }
 
 bool Family::contains(const Eigen::VectorXd& coordinates) {

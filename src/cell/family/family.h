@@ -22,6 +22,7 @@ class Family {
 
     double coordinate(double value) const;  ///< -1 at low, 1 at high
     double value(double coordinate) const;
+    std::string text(double value) const;  ///< "tip_radius 0.107 of [0.04, 0.2]"
   };
 
   /// Throws ConfigError that names file, key, value and what is allowed.
@@ -34,8 +35,8 @@ class Family {
   /// The member at these coordinates, without dimension.
   Scene member(const Eigen::VectorXd& coordinates) const;
   /// Coordinates of a scene; outside of [-1, 1] beyond the borders. Nothing when the scene differs
-  /// from the family in something else.
-  std::optional<Eigen::VectorXd> coordinatesOf(const Scene& scene) const;
+  /// from the family in something else; `misfit` then says in what, for the user.
+  std::optional<Eigen::VectorXd> coordinatesOf(const Scene& scene, std::string* misfit = nullptr) const;
   /// Whether all coordinates are within the borders, up to rounding.
   static bool contains(const Eigen::VectorXd& coordinates);
 
@@ -49,6 +50,8 @@ class Family {
 
  private:
   std::optional<double> takeRatio(const Ratio& ratio, Scene& scene) const;
+  std::optional<Eigen::VectorXd> coordinatesOf(const Scene& scene, std::string& misfit) const;
+  std::string differenceFrom(const Scene& scene) const;
 
   std::string name_;
   Scene scene_;

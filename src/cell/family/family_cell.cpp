@@ -1,5 +1,6 @@
 #include "cell/family/family_cell.h"
 
+#include <filesystem>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -13,14 +14,12 @@ namespace {
 
 /// "tip_radius 0.107 of [0.04, 0.2], ..."
 std::string parametersText(const Family& family, const Eigen::VectorXd& coordinates) {
-  std::ostringstream out;
-  out.precision(3);
+  std::vector<std::string> texts;
   for (int i = 0; i < family.dimension(); ++i) {
     const Family::Parameter& parameter = family.parameters()[i];
-    out << (i > 0 ? ", " : "") << parameter.ratio->name << ' ' << parameter.value(coordinates[i]) << " of ["
-        << parameter.low << ", " << parameter.high << ']';
+    texts.push_back(parameter.text(parameter.value(coordinates[i])));
   }
-  return out.str();
+  return join(texts, ", ");
 }
 
 std::string describe(const Family& family, const Eigen::VectorXd& coordinates, const SurrogateData& cell) {
@@ -42,8 +41,12 @@ void append(std::string& reasons, const std::string& reason) {
 std::optional<FamilyCell> makeFamilyCell(const std::shared_ptr<const FamilyData>& family, const Scene& scene,
                                          std::string& reason) {
   reason.clear();
-  const auto coordinates = family->family().coordinatesOf(scene);
-  if (!coordinates) return std::nullopt;
+  std::string misfit;
+  const auto coordinates = family->family().coordinatesOf(scene, &misfit);
+  if (!coordinates) {
+    reason = "not of family " + family->family().name() + ": " + misfit;
+    return std::nullopt;
+  }
   const std::string place = parametersText(family->family(), *coordinates);
   if (!Family::contains(*coordinates)) {
     reason = "outside of family " + family->family().name() + ": " + place;
@@ -73,10 +76,21 @@ std::optional<FamilyCell> makeFamilyCell(const std::shared_ptr<const FamilyData>
 std::optional<FamilyCell> findFamilyCell(const std::string& folder, const Scene& scene, std::string& reason) {
   reason.clear();
   if (folder.empty()) return std::nullopt;
+  const std::vector<std::string> files = familyFiles(folder);
+  if (files.empty()) {
+    reason = std::filesystem::is_directory(folder) ? folder + " has no family: must have files *.yaml"
+                                                   : folder + " is no folder: must be that of the families";
+    return std::nullopt;
+  }
   std::optional<FamilyCell> best;
-  for (const std::string& file : familyFiles(folder)) {
+  std::string misfits;
+  for (const std::string& file : files) {
     const Family family = Family::load(file);
-    if (!family.coordinatesOf(scene)) continue;
+    std::string misfit;
+    if (!family.coordinatesOf(scene, &misfit)) {
+      append(misfits, "family " + family.name() + ": " + misfit);
+      continue;
+    }
     CacheRead<FamilyData> read = FamilyData::load(family, familyDataFile(file));
     if (!read) {
       append(reason, "family " + family.name() + " has no data (" + read.reason + ")");
@@ -87,7 +101,7 @@ std::optional<FamilyCell> findFamilyCell(const std::string& folder, const Scene&
     append(reason, own);
     if (cell && (!best || cell->data->common_error < best->data->common_error)) best = std::move(cell);
   }
-  if (!best && reason.empty()) reason = "no family has cells of this form";
+  if (!best && reason.empty()) reason = "no family has cells of this form (" + misfits + ")";
   return best;
 }
 

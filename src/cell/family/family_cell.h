@@ -16,7 +16,7 @@ struct FamilyCell {
 };
 
 /// The member of `family` that a scene is, in the scene's units. Takes milliseconds. Without one,
-/// `reason` is one line for the user; it is empty when the scene is of another form.
+/// `reason` is one line for the user.
 std::optional<FamilyCell> makeFamilyCell(const std::shared_ptr<const FamilyData>& family, const Scene& scene,
                                          std::string& reason);
 

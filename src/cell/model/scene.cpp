@@ -7,6 +7,8 @@
 
 #include "base/config_reader.h"
 #include "base/errors.h"
+#include "base/parse_number.h"
+#include "cell/model/plausible_scene.h"
 #include "cell/model/read_quantity.h"
 #include "cell/model/scene_check.h"
 #include "cell/model/tensegrity_scene.h"
@@ -154,6 +156,81 @@ void readRequirements(ConfigReader requirements, Scene::Requirements& value) {
   readQuantity(requirements, "rate", value.rate, Range::positive(), "Hz");
 }
 
+Scene readScene(const YAML::Node& node, const std::string& origin) {
+  Scene scene;
+  ConfigReader reader(node, origin);
+  readCell(reader.section("cell", ConfigReader::kRequired), scene.cell);
+  const bool continuum = !scene.cell.tensegrity;
+  if (!continuum && reader.has("holding_pipette")) {
+    reader.error("holding_pipette", "must be left out: of a tensegrity cell the three lowest strut ends are held");
+  }
+  if (!continuum && reader.has("mesh")) {
+    reader.error("mesh", "must be left out: a tensegrity cell has microtubules/slices and membrane/divisions");
+  }
+  if (!continuum && reader.has("requirements")) {
+    reader.error("requirements", "must be left out: a tensegrity cell has one model, whose error is not known");
+  }
+  readQuantity(reader.section("holding_pipette", continuum ? ConfigReader::kRequired : ConfigReader::kOptional),
+               "contact_radius", scene.holding_pipette.contact_radius, Range::positive(), "m",
+               continuum ? ConfigReader::kRequired : ConfigReader::kOptional);
+  readNeedle(reader.section("needle", ConfigReader::kRequired), scene.needle);
+  readMesh(reader.section("mesh"), scene.mesh);
+  readRequirements(reader.section("requirements"), scene.requirements);
+  reader.finish();
+  return scene;
+}
+
+/// Runs a check of a scene, whose messages begin with keys; those that it throws begin with `origin`.
+void checkFrom(const std::string& origin, const Scene& scene, void (*check)(const Scene& scene)) {
+  try {
+    check(scene);
+  } catch (const ConfigError& error) {
+    std::vector<std::string> messages;
+    std::istringstream lines(error.what());
+    for (std::string line; std::getline(lines, line);) messages.push_back(origin + ": " + line);
+    throw ConfigError(messages);
+  }
+}
+
+/// Line of the value whose path begins `text`, as "cell/layers/0/name = zona: must be"; of the nearest map around it
+/// where it is not in the file.
+int lineOf(const YAML::Node& file, const std::string& text) {
+  YAML::Node at;
+  at.reset(file);
+  int line = file.Mark().line;
+  std::istringstream keys(text.substr(0, text.find_first_of(" :")));
+  for (std::string key; std::getline(keys, key, '/');) {
+    YAML::Node next;
+    if (at.IsMap()) {
+      for (const auto& item : at) {
+        if (!item.first.IsScalar() || item.first.Scalar() != key) continue;
+        line = item.first.Mark().line;
+        next.reset(item.second);
+      }
+    } else if (const auto index = parseNumber<std::size_t>(key); at.IsSequence() && index && *index < at.size()) {
+      next.reset(at[*index]);
+      line = next.Mark().line;
+    }
+    at.reset(next);
+  }
+  return line + 1;
+}
+
+/// "FILE: KEY ..." becomes "FILE, line N: KEY ...".
+ConfigError withLines(const ConfigError& error, const YAML::Node& file, const std::string& path) {
+  std::vector<std::string> messages;
+  std::istringstream lines(error.what());
+  for (std::string line; std::getline(lines, line);) {
+    const std::string start = path + ": ";
+    if (line.rfind(start, 0) == 0) {
+      const std::string text = line.substr(start.size());
+      line = path + ", line " + std::to_string(lineOf(file, text)) + ": " + text;
+    }
+    messages.push_back(line);
+  }
+  return ConfigError(messages);
+}
+
 }  // namespace
 
 std::vector<double> Scene::Cell::outerRadii() const {
@@ -186,34 +263,25 @@ void Scene::requireContinuum(const std::string& purpose) const {
 }
 
 Scene parseScene(const YAML::Node& node, const std::string& origin) {
-  Scene scene;
-  ConfigReader reader(node, origin);
-  readCell(reader.section("cell", ConfigReader::kRequired), scene.cell);
-  const bool continuum = !scene.cell.tensegrity;
-  if (!continuum && reader.has("holding_pipette")) {
-    reader.error("holding_pipette", "must be left out: of a tensegrity cell the three lowest strut ends are held");
-  }
-  if (!continuum && reader.has("mesh")) {
-    reader.error("mesh", "must be left out: a tensegrity cell has microtubules/slices and membrane/divisions");
-  }
-  if (!continuum && reader.has("requirements")) {
-    reader.error("requirements", "must be left out: a tensegrity cell has one model, whose error is not known");
-  }
-  readQuantity(reader.section("holding_pipette", continuum ? ConfigReader::kRequired : ConfigReader::kOptional),
-               "contact_radius", scene.holding_pipette.contact_radius, Range::positive(), "m",
-               continuum ? ConfigReader::kRequired : ConfigReader::kOptional);
-  readNeedle(reader.section("needle", ConfigReader::kRequired), scene.needle);
-  readMesh(reader.section("mesh"), scene.mesh);
-  readRequirements(reader.section("requirements"), scene.requirements);
-  reader.finish();
-  try {
-    scene.validate();
-  } catch (const ConfigError& error) {
-    throw ConfigError(origin + ": " + error.what());
-  }
+  const Scene scene = readScene(node, origin);
+  checkFrom(origin, scene, checkPlausible);
+  checkFrom(origin, scene, checkScene);
   return scene;
 }
 
-Scene loadScene(const std::string& path) { return parseScene(loadYamlMap(path), path); }
+Scene parseDimensionlessScene(const YAML::Node& node, const std::string& origin) {
+  const Scene scene = readScene(node, origin);
+  checkFrom(origin, scene, checkScene);
+  return scene;
+}
+
+Scene loadScene(const std::string& path) {
+  const YAML::Node file = loadYamlMap(path);
+  try {
+    return parseScene(file, path);
+  } catch (const ConfigError& error) {
+    throw withLines(error, file, path);
+  }
+}
 
 }  // namespace microinjection

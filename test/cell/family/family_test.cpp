@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 
 #include "base/errors.h"
+#include "cell/family/family_cell.h"
 #include "cell/model/similarity.h"
 
 namespace microinjection {
@@ -76,6 +78,51 @@ TEST(Family, OtherCellsAndTipsAreNoMembers) {
   other = scene;
   other.cell.layers.front().surface_tension = 1e-3;
   EXPECT_FALSE(homogeneous.coordinatesOf(other));
+}
+
+TEST(Family, SaysWhyACellIsNoMember) {
+  const Family homogeneous = family("homogeneous"), zona = family("zona");
+  const auto misfit = [](const Family& cells, const Scene& scene) {
+    std::string text = "old";
+    const bool is_member = cells.coordinatesOf(scene, &text).has_value();
+    EXPECT_EQ(is_member, text.empty()) << text;
+    return text;
+  };
+  const Scene scene = cell("mouse_oocyte_pipette");
+  EXPECT_EQ(misfit(homogeneous, scene), "");
+  EXPECT_EQ(misfit(zona, scene), "1 layer, not 2");
+  EXPECT_EQ(misfit(homogeneous, cell("mouse_oocyte_layered")), "2 layers, not 1");
+  EXPECT_EQ(misfit(homogeneous, cell("mouse_oocyte_tensegrity")), "the cell is a tensegrity");
+  EXPECT_EQ(misfit(homogeneous, cell("mouse_oocyte_linear")),
+            "material linear, not neo_hookean, tip disc, not hemisphere");
+  Scene other = scene;
+  other.needle.contact.mode = "sliding";
+  other.cell.layers.front().surface_tension = 0.1 * 17.9e3 * 28e-6;
+  EXPECT_EQ(misfit(homogeneous, other), "surface_tension 0.1, not 0, contact sliding, not sticking");
+  other = zona.member(Eigen::Vector3d::Zero());
+  other.holding_pipette.contact_radius = 0.179;
+  EXPECT_EQ(misfit(zona, other), "holding_radius 0.179 of [0.35, 0.364]");
+  for (Scene::Layer& layer : other.cell.layers) layer.material.poisson_ratio = 0.3;
+  EXPECT_EQ(misfit(zona, other), "holding_radius 0.179 of [0.35, 0.364], poisson_ratio 0.3 of [0.488, 0.492]");
+  other.cell.layers[1].material.poisson_ratio = 0.49;
+  EXPECT_NE(misfit(zona, other).find("poisson_ratio is not the same in all layers"), std::string::npos);
+}
+
+TEST(FindFamilyCell, SaysWhyThereIsNone) {
+  const auto reason = [](const std::string& folder, const std::string& name) {
+    std::string text;
+    EXPECT_FALSE(findFamilyCell(folder, cell(name), text));
+    return text;
+  };
+  EXPECT_EQ(
+      reason(std::string(kFolder) + "families", "mouse_oocyte_tensegrity"),
+      "no family has cells of this form (family homogeneous: the cell is a tensegrity; family zona: the cell is a "
+      "tensegrity)");
+  EXPECT_EQ(reason("/nowhere", "mouse_oocyte"), "/nowhere is no folder: must be that of the families");
+  const std::string empty = testing::TempDir() + "no_families";
+  std::filesystem::create_directories(empty);
+  EXPECT_EQ(reason(empty, "mouse_oocyte"), empty + " has no family: must have files *.yaml");
+  EXPECT_EQ(reason("", "mouse_oocyte"), "") << "none is asked for";
 }
 
 /// A ratio of all layers must be that of each; one that does not vary must be within its borders.

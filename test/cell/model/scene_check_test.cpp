@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <string>
 
+#include "cell/model/plausible_scene.h"
 #include "cell/model/scene_texts.h"
 
 namespace microinjection {
@@ -157,6 +159,69 @@ TEST(SceneCheck, TakesTheTipsAndCellsThatThereAre) {
       }
     }
   }
+}
+
+/// Of each kind of quantity, a number in the unit that people write.
+TEST(SceneCheck, RefusesValuesInAnotherUnit) {
+  const auto with = [](const std::vector<std::string>& path, const char* value, const char* text = kLayered) {
+    YAML::Node node = YAML::Load(text), at;
+    at.reset(node);
+    for (std::size_t i = 0; i + 1 < path.size(); ++i) {
+      const YAML::Node next = at.IsSequence() ? at[std::stoul(path[i])] : at[path[i]];
+      at.reset(next);
+    }
+    at[path.back()] = YAML::Load(value);
+    return errorsOf(node);
+  };
+  expectIn(with({"cell", "diameter"}, "56", kGood),
+           {"scene.yaml: cell/diameter = 56 m: must be 1e-6 .. 5e-3 m; 56 um would be 5.6e-5"});
+  expectIn(with({"cell", "layers", "0", "outer_radius"}, "28"),
+           {"cell/layers/0/outer_radius = 28 m: must be 5e-7 .. 2.5e-3 m; 28 um would be 2.8e-5"});
+  expectIn(with({"cell", "layers", "1", "material", "young_modulus"}, "0.5"),
+           {"cell/layers/1/material/young_modulus = 0.5 Pa: must be 1 .. 1e7 Pa; 0.5 kPa would be 500"});
+  expectIn(with({"cell", "layers", "1", "surface_tension"}, "35"),
+           {"cell/layers/1/surface_tension = 35 N/m: must be 0 .. 1 N/m; 35 mN/m would be 0.035"});
+  expectIn(with({"cell", "material", "viscoelasticity"}, "{prony: [{modulus_ratio: 1, relaxation_time: 1e8}]}", kGood),
+           {"cell/material/viscoelasticity/prony/0/relaxation_time = 1e+08 s: must be 1e-6 .. 1e6 s"});
+  expectIn(with({"cell", "puncture"}, "{force: 7.5}"), {"cell/puncture/force = 7.5 N: must be 1e-13 .. 1 N; 7.5 uN"});
+  expectIn(with({"cell", "puncture"}, "{layers: [{name: a, depth: 45}]}"),
+           {"cell/puncture/layers/0/depth = 45 m: must be 1e-9 .. 5e-3 m; 45 um"});
+  expectIn(with({"cell", "puncture"}, "{layers: [{name: a, strain: 15, dimple_radius: 1e-5}]}"),
+           {"cell/puncture/layers/0/strain = 15: must be 1e-4 .. 10; 15 % would be 0.15"});
+  expectIn(with({"needle", "tip", "radius"}, "3"), {"needle/tip/radius = 3 m: must be 1e-8 .. 1e-3 m; 3 um"});
+  expectIn(with({"needle", "offset"}, "[0, -2]"),
+           {"needle/offset = -2 m: must be -5e-3 .. 5e-3 m; -2 um would be -2e-6"});
+  expectIn(with({"holding_pipette", "contact_radius"}, "10"), {"holding_pipette/contact_radius = 10 m: must be"});
+  expectIn(with({"mesh"}, "{size: 5}"), {"mesh/size = 5 m: must be 1e-9 .. 2.5e-3 m; 5 um"});
+}
+
+TEST(SceneCheck, ADimensionlessSceneHasNoPlausibleRange) {
+  const YAML::Node node = YAML::Load(
+      "{cell: {diameter: 2, material: {model: neo_hookean, young_modulus: 1, poisson_ratio: 0.4}},"
+      " holding_pipette: {contact_radius: 0.3}, needle: {tip: {shape: hemisphere, radius: 0.1}}}");
+  EXPECT_EQ(parseDimensionlessScene(node, "family.yaml").cell.diameter(), 2);
+  expectIn(errorsOf(node), {"cell/diameter = 2 m: must be"});
+}
+
+TEST(SceneCheck, AFilesErrorsNameItsLines) {
+  const std::string path = testing::TempDir() + "scene_check_test.yaml";
+  const auto errors = [&](const std::string& tip_and_rest) {
+    std::ofstream(path)
+        << "# a cell\ncell:\n  layers:\n    - name: zona\n      outer_radius: 28\n      material: {model: "
+           "linear, young_modulus: 1e3, poisson_ratio: 0.4}\nholding_pipette:\n  contact_radius: 10e-6\n"
+        << "needle:\n  tip: {shape: disc, " << tip_and_rest;
+    try {
+      loadScene(path);
+    } catch (const ConfigError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  expectIn(errors("radius: many}\n"), {(path + ", line 10: needle/tip/radius = many: must be a number").c_str()});
+  const std::string two = errors("radius: 3}\n  offst: [0, 0]\n");
+  expectIn(two, {(path + ", line 11: needle/offst: unknown key").c_str()});
+  expectIn(errors("radius: 3}\n"),
+           {(path + ", line 10: needle/tip/radius = 3 m").c_str(), "line 2: cell/diameter = 56 m"});
 }
 
 TEST(SceneCheck, ValidateGuardsScenesMadeInCode) {
