@@ -39,15 +39,25 @@ void addSource(FrameSource& source, SharpestPlane& search) {
   for (const std::string& report : source.takeReports()) std::cerr << "measure_cell: " << report << '\n';
 }
 
+/// All pages of a stack: like the images of a folder, those that cannot be read are left out.
+void addPages(const std::string& input, SharpestPlane& search) {
+  const ImageFile file(input);
+  for (std::size_t page = 0; page < file.pages(); ++page) {
+    const LoadedImage loaded = file.load(page);
+    if (loaded.refusal.empty()) search.add({loaded.image, std::nullopt, file.nameOf(page)});
+    if (loaded.refusal.empty()) continue;
+    if (file.pages() == 1) throw ConfigError(input + ": " + loaded.refusal);
+    std::cerr << "measure_cell: " << file.nameOf(page) << ": " << loaded.refusal << '\n';
+  }
+}
+
 void addImages(const std::string& input, SharpestPlane& search) {
   if (!fs::exists(input)) throw ConfigError(input + ": no such image, folder or video");
   if (fs::is_directory(input)) {
     FolderSource folder(input, kAnyRate, false);
     addSource(folder, search);
   } else if (hasImageName(input)) {
-    const LoadedImage loaded = loadImage(input);
-    if (!loaded.refusal.empty()) throw ConfigError(input + ": " + loaded.refusal);
-    search.add({loaded.image, std::nullopt, fs::path(input).filename().string()});
+    addPages(input, search);
   } else {
     VideoSource video(input, kAnyRate, false);
     addSource(video, search);
@@ -102,11 +112,14 @@ int run(int argc, char** argv) {
   const std::optional<MeasureCellArguments> parsed = parseMeasureCellArguments(argc, argv);
   if (!parsed) return kFound;  // the help
   const MeasureCellArguments& arguments = *parsed;
-  const double pixel_size = arguments.vision.pixelSize();
   if (!arguments.out.empty()) requireWritableFolder(fs::absolute(arguments.out).parent_path());
+  std::string warning;
+  arguments.vision.pixelSize({0, 0}, warning);  // so that it is known to be missing before the search
   SharpestPlane search(arguments.vision.tracker);
   addImages(arguments.input, search);
   const CellPlane& plane = *search.best();
+  const double pixel_size = arguments.vision.pixelSize({plane.image.cols, plane.image.rows}, warning);
+  if (!warning.empty()) std::cerr << "measure_cell: " << warning << '\n';
   printPlane(plane, search);
   if (!arguments.overlay.empty()) writeOverlay(arguments.overlay, plane);
   CellReadings readings(1);

@@ -17,8 +17,8 @@ constexpr char kHelp[] = R"(measure_cell: diameter and zona of a cell in images,
 
 Usage: measure_cell INPUT --pixel-size M [--scene FILE --out FILE] [--overlay PICTURE] [--families FOLDER]
 
-INPUT is an image, a folder of images or a video. Of several images, the one is measured in which the cell is the
-sharpest: a stack of planes needs no choice. An image out of focus gives a wrong diameter, which its interval leaves out.
+INPUT is an image, a stack (TIFF with several pages), a folder of images or a video. Of several images, the one is
+measured in which the cell is the sharpest: a stack of planes needs no choice. An image out of focus gives a wrong diameter, which its interval leaves out.
 It prints, a line each:
   image      name of the measured image, its number, and in how many images the cell was measured
   verdict    found, uncertain or not found, with the reason
@@ -55,7 +55,7 @@ std::optional<MeasureCellArguments> parseMeasureCellArguments(int argc, char** a
   auto add = options.add_options();
   add("help,h", "this text");
   add("input", po::value(&arguments.input)->value_name("PATH"),
-      "image, folder or video; the option's name may be left out");
+      "image, stack, folder or video; the option's name may be left out");
   add("pixel-size", po::value(&pixel_size)->value_name("M"), "m of the specimen for a pixel");
   add("calibration", po::value(&calibration)->value_name("FILE"), "calibration with the pixel size, instead of it");
   add("config", po::value(&config)->value_name("FILE"), "parameters of the search, as config/vision.yaml");

@@ -144,7 +144,7 @@ void CalibrationNode::step() {
 
 void CalibrationNode::complete() {
   const CalibrationSetup setup{utcNow(), watch_.imageCentre(),
-                               calibration_ ? calibration_->tips : std::vector<TipRecord>()};
+                               calibration_ ? calibration_->tips : std::vector<TipRecord>(), watch_.imageSize()};
   const CalibrationOutcome outcome = calibrate(run_->observations(), parameters_.calibration.limits, setup);
   if (!outcome.calibration) return finish(false, join(outcome.refusals, "; "));
   try {
@@ -195,6 +195,8 @@ void CalibrationNode::rezero(std_srvs::Trigger::Response& response) {
     response.message = "/needle/measured_cp is silent, old or invalid";
   } else if (!present.tip || present.tip->stamp < watch_.restedSince() + parameters_.calibration.pattern.settle_time) {
     response.message = present.tip ? "the needle has just moved" : "the tip is not seen: " + watch_.tipReason();
+  } else if (const std::string reason = calibration_->refusalOf(watch_.imageSize()); !reason.empty()) {
+    response.message = reason;
   } else {
     NewTip tip;
     tip.pixel = present.tip->pixel;
@@ -239,6 +241,10 @@ void CalibrationNode::report(diagnostic_updater::DiagnosticStatusWrapper& status
   if (run_) status.summary(diagnostic_msgs::DiagnosticStatus::OK, "calibrating");
   if (drift_report_.verdict == DriftVerdict::kDrifted)
     status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "the tip has drifted: calibrate or rezero");
+  if (calibration_ && !watch_.imageSize().isZero()) {
+    for (const std::string& doubt : {calibration_->refusalOf(watch_.imageSize()), calibration_->warning()})
+      if (!doubt.empty()) status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, doubt);
+  }
   bus_.refusals().report(status);
   status.add("file", parameters_.file);
   if (calibration_) status.add("date", calibration_->date);

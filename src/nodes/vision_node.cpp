@@ -17,6 +17,7 @@
 #include "nodes/imaging/vision_messages.h"
 #include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/node_parameters.h"
+#include "vision/calibration/calibration_path.h"
 #include "vision/measurement/measured_scene.h"
 
 namespace microinjection {
@@ -110,6 +111,7 @@ void VisionNode::onImage(const sensor_msgs::Image& message) {
   last_data_ = message.data;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
+    image_size_ = {frame.width(), frame.height()};
     const ros::SteadyTime now = bus_.steady();
     // Behind a pause may be another cell, and a needle makes the cell that it presses wider.
     const bool paused = !received_.isZero() && secondsBetween(received_, now) > parameters_.vision.image_timeout;
@@ -131,12 +133,20 @@ double VisionNode::processingTime() const {
   return bus_.isVirtual() ? 1e-9 * static_cast<double>(bus_.steady().toNSec()) : threadCpuTime();
 }
 
+Eigen::Vector2i VisionNode::imageSize() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return image_size_;
+}
+
 /// A calibration may come, or change, while images do.
 void VisionNode::readPixelSize() {
   try {
-    pixel_size_ = parameters_.vision.pixelSize();
-  } catch (const std::exception&) {
-    pixel_size_ = 0;  // measureCell() says why
+    pixel_size_ = parameters_.vision.pixelSize(imageSize(), calibration_warning_);
+  } catch (const std::exception& error) {
+    pixel_size_ = 0;
+    // Without a calibration nothing is wrong yet: measureCell() says what is missing.
+    const bool is_calibrated = std::filesystem::exists(calibrationPath(parameters_.vision.calibration));
+    calibration_warning_ = is_calibrated ? error.what() : "";
   }
 }
 
@@ -154,7 +164,8 @@ void VisionNode::publish(const std_msgs::Header& header, const Frame& frame, dou
 }
 
 CellMeasurement VisionNode::measure() const {
-  const double pixel_size = parameters_.vision.pixelSize();
+  std::string warning;
+  const double pixel_size = parameters_.vision.pixelSize(imageSize(), warning);
   const std::lock_guard<std::mutex> lock(mutex_);
   const double age = received_.isZero() ? -1 : secondsBetween(received_, bus_.steady());
   if (age < 0 || age > parameters_.vision.image_timeout)
@@ -215,6 +226,7 @@ void VisionNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   if (age < 0 || age > parameters_.vision.image_timeout)
     status.mergeSummary(diagnostic_msgs::DiagnosticStatus::ERROR,
                         std::string(kImageTopic) + (age < 0 ? " is silent" : " is stale"));
+  if (!calibration_warning_.empty()) status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, calibration_warning_);
   const SpecimenView& view = tracker_.view();
   const auto add = [&](const char* name, const Finding& finding) {
     status.add(name, std::string(nameOf(finding.verdict)) + (finding.reason.empty() ? "" : ": " + finding.reason));

@@ -45,6 +45,7 @@ class VisionNode {
   void onImage(const sensor_msgs::Image& message);
   std::string refusalOf(const sensor_msgs::Image& message, const ros::Time& now) const;
   double processingTime() const;  ///< s of processor time; in virtual time s of that, since no machine may change it
+  Eigen::Vector2i imageSize() const;  ///< px, of the last accepted image; 0: none
   void readPixelSize();
   void publish(const std_msgs::Header& header, const Frame& frame, double processing_time);
   void measureCell(const cell_microinjection::MeasureCell::Request& request,
@@ -65,13 +66,15 @@ class VisionNode {
   ros::Time stamp_;                      ///< of the last accepted image
   mutable std::mutex mutex_;             ///< of what follows, which the service reads
   CellReadings readings_;
-  bool pressed_ = false;      ///< by the needle, in the newest image
-  ros::SteadyTime received_;  ///< last accepted image
-  std::string refusal_;       ///< of the last image; empty: accepted
+  Eigen::Vector2i image_size_ = Eigen::Vector2i::Zero();  ///< px, of the last accepted image
+  bool pressed_ = false;                                  ///< by the needle, in the newest image
+  ros::SteadyTime received_;                              ///< last accepted image
+  std::string refusal_;                                   ///< of the last image; empty: accepted
 
-  double pixel_size_ = 0;  ///< m; 0: not known
-  unsigned accepted_ = 0;  ///< since reported_
-  double longest_ = 0;     ///< s of processor time, since reported_
+  double pixel_size_ = 0;            ///< m; 0: not known
+  std::string calibration_warning_;  ///< why the calibration is not that of these images, or may not be
+  unsigned accepted_ = 0;            ///< since reported_
+  double longest_ = 0;               ///< s of processor time, since reported_
   ros::SteadyTime reported_;
   Diagnostics diagnostics_;
   BusHandle timer_;

@@ -43,11 +43,18 @@ VisualServoNode::VisualServoNode(Bus& bus)
           bus, "visual_servo/proposed_pixel", 1,
           [this](const geometry_msgs::PointStamped& message, const std::string&) { onProposal(message); })) {}
 
+CameraCalibration VisualServoNode::readFor(const Eigen::Vector2i& image) const {
+  const std::string path = calibrationPath(parameters_.calibration);
+  const CameraCalibration calibration = readCalibration(path);
+  if (const std::string reason = calibration.refusalOf(image); !reason.empty()) throw ConfigError(path + ": " + reason);
+  return calibration;
+}
+
 void VisualServoNode::onProposal(const geometry_msgs::PointStamped& message) {
   proposal_.reset();
   const Eigen::Vector2d pixel(message.point.x, message.point.y);
   if (!message.header.stamp.isZero() && pixel.allFinite())
-    proposal_ = {pixel, bus_.steady(), readCalibration(calibrationPath(parameters_.calibration))};
+    proposal_ = {pixel, bus_.steady(), readFor(watch_.imageSize())};
 }
 
 std::optional<Eigen::Vector3d> VisualServoNode::proposedPoint() const {
@@ -80,7 +87,7 @@ void VisualServoNode::begin(const Goal& goal) {
   pixel_ = {goal.x, goal.y};
   if (!watch_.tip()) throw ConfigError("the tip is not seen: " + watch_.tipReason());
   if (const std::string reason = watch_.cellOnTheWay(pixel_); !reason.empty()) throw ConfigError(reason);
-  calibration_ = readCalibration(calibrationPath(parameters_.calibration));
+  calibration_ = readFor(watch_.imageSize());
   setpoints_.begin(start_);
 }
 

@@ -45,6 +45,8 @@ class VisualServoNode : public GoalNode<cell_microinjection::GoToPixelAction> {
   void step() override;
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) override;
 
+  /// The calibration's file. @throws ConfigError it cannot be read, or is of images of another size (px)
+  CameraCalibration readFor(const Eigen::Vector2i& image) const;
   void onProposal(const geometry_msgs::PointStamped& message);
   std::optional<Eigen::Vector3d> proposedPoint() const;  ///< m; none: nothing is proposed, or the place is not known
   void publishProposal();

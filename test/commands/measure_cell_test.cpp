@@ -4,9 +4,11 @@
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
+#include <vector>
 
 #include "cell/model/scene.h"
 #include "commands/command_test.h"
+#include "vision/calibration/calibration_file.h"
 #include "vision/microscope/microscope.h"
 
 namespace microinjection {
@@ -64,6 +66,44 @@ TEST_F(MeasureCellCommand, MakesASceneOfAStack) {
   EXPECT_EQ(scene.cell.layers.size(), 2U);
   const cv::Mat overlay = cv::imread(directory_ + "overlay.png");
   EXPECT_EQ(overlay.cols, 1392);
+}
+
+TEST_F(MeasureCellCommand, SearchesAllPagesOfAStack) {
+  Microscope microscope{MicroscopeConfig()};
+  MicroscopeScene scene;
+  scene.cells.push_back(CellScene::round({0, 0}, 38e-6, 6e-6, 0));
+  std::vector<cv::Mat> planes;
+  for (const double focus : {-12e-6, -6e-6, 0.0, 6e-6}) planes.push_back(microscope.render(scene, focus, 7));
+  ASSERT_TRUE(cv::imwritemulti(directory_ + "stack.tif", planes));
+  const Outcome result = run("stack.tif --pixel-size 0.25e-6");
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("image: stack.tif, page 3 of 4, 3 of 4"), std::string::npos) << result.out;
+  EXPECT_NEAR(number(result.out, "diameter"), 76, 0.3);
+}
+
+TEST_F(MeasureCellCommand, RefusesTheCalibrationOfOtherImages) {
+  render(38e-6);
+  CameraCalibration calibration;
+  calibration.date = "2025-03-04T05:06:07Z";
+  calibration.value[kPixelSize] = 0.25e-6;
+  calibration.value[kAxisRatio] = 1;
+  calibration.points = 1;
+  writeCalibration(directory_ + "old.yaml", calibration);
+  Outcome result = run("stack/plane8.png --calibration old.yaml");
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.err.find("old.yaml: the calibration does not say of which size"), std::string::npos) << result.err;
+  calibration.image_size = {1392, 1040};
+  writeCalibration(directory_ + "whole.yaml", calibration);
+  result = run("stack/plane8.png --calibration whole.yaml");
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  calibration.image_size = {2784, 2080};  // the images are binned
+  writeCalibration(directory_ + "unbinned.yaml", calibration);
+  result = run("stack/plane8.png --calibration unbinned.yaml");
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.err.find("unbinned.yaml: the calibration is of images of 2784 x 2080 px, this one has 1392 x 1040"),
+            std::string::npos)
+      << result.err;
 }
 
 TEST_F(MeasureCellCommand, WritesNoSceneOfWhatItDoesNotFind) {

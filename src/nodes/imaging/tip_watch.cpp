@@ -108,7 +108,7 @@ void TipWatch::onVision(const cell_microinjection::VisionState& message) {
   const bool old = isOld(tip_receipt_);
   tip_reason_ = old ? "the image is old, or stamped ahead" : tip.reason;
   if (old) return;
-  image_centre_ = Eigen::Vector2d(message.width - 1.0, message.height - 1.0) / 2;
+  image_size_ = Eigen::Vector2i(static_cast<int>(message.width), static_cast<int>(message.height));
   // Beside a cell the tip is often uncertain. What was known stays until an image shows the needle again.
   if (tip.verdict != tip.NOT_FOUND) beside_ = besideCell(message.cell, tip);
   if (message.cell.verdict != message.cell.NOT_FOUND)

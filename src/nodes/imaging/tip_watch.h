@@ -36,7 +36,8 @@ class TipWatch {
   std::string tipReason() const { return tip_ ? "the image is old" : tip_reason_; }
   /// s of ROS time, since when the needle has been at one place within 0.2 um.
   double restedSince() const { return rested_; }
-  Eigen::Vector2d imageCentre() const { return image_centre_; }  ///< px
+  Eigen::Vector2i imageSize() const { return image_size_; }  ///< px, width and height
+  Eigen::Vector2d imageCentre() const { return (image_size_.cast<double>() - Eigen::Vector2d::Ones()) / 2; }  ///< px
   const cell_microinjection::OperatingState& needle() const { return needle_state_; }
   const cell_microinjection::OperatingState& controller() const { return controller_state_; }
 
@@ -67,7 +68,7 @@ class TipWatch {
   double rested_ = 0;
   std::optional<SeenTip> tip_;
   std::string tip_reason_ = "no image was received";
-  Eigen::Vector2d image_centre_ = Eigen::Vector2d::Zero();
+  Eigen::Vector2i image_size_ = Eigen::Vector2i::Zero();
   std::string beside_;  ///< by the newest image: why the tip is not clear above the cell; else empty
   struct SeenCell {
     Eigen::Vector2d centre{0, 0};  ///< px

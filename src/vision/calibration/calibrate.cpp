@@ -62,6 +62,7 @@ CameraCalibration resultOf(const CalibrationData& data, const CalibrationStart& 
   result.mirrored = start.mirrored;
   result.origin = data.origin;
   result.reference_pixel = setup.reference_pixel;
+  result.image_size = setup.image_size;
   result.value = problem.value();
   result.estimated = data.estimated;
   result.freedom = std::max(1, problem.freedom());

@@ -14,6 +14,7 @@ struct CalibrationSetup {
   std::string date;                                           ///< UTC, YYYY-MM-DDTHH:MM:SSZ
   Eigen::Vector2d reference_pixel = Eigen::Vector2d::Zero();  ///< px, the image's centre
   std::vector<TipRecord> tips;                                ///< earlier tips of this holder
+  Eigen::Vector2i image_size = Eigen::Vector2i::Zero();       ///< px, width and height
 };
 
 struct CalibrationOutcome {

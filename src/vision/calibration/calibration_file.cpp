@@ -121,6 +121,11 @@ CameraCalibration readNode(const YAML::Node& node, const std::string& name) {
   reader.boolean("mirrored", calibration.mirrored, kRequired);
   reader.vector("origin", origin, Range::finite(), kRequired);
   reader.vector("reference_pixel", reference, Range::finite(), kRequired);
+  const Range side = Range::closed(1, 65536);
+  if (reader.has("width") || reader.has("height")) {
+    reader.integer("width", calibration.image_size.x(), side, kRequired);
+    reader.integer("height", calibration.image_size.y(), side, kRequired);
+  }
   readQuality(reader, calibration);
   std::array<Interval, kCalibrationParameters> intervals;
   readParameters(reader, calibration, intervals);
@@ -148,6 +153,9 @@ std::string toYaml(const CameraCalibration& calibration) {
   out << "  # m, place of the tip that is seen at (tip_u, tip_v)\nreference_pixel: ";
   writeList(out, calibration.reference_pixel);
   out << "  # px, of the tips below\n";
+  if (!calibration.image_size.isZero())
+    out << "width: " << calibration.image_size.x() << "  # px, of the images\nheight: " << calibration.image_size.y()
+        << '\n';
   out << "points: " << calibration.points << "  # tips used\n";
   out << "focus_points: " << calibration.focus_points << "  # focus readings used\n";
   out << "outliers: " << calibration.outliers << "  # left out\n";

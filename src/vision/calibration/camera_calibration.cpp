@@ -27,6 +27,18 @@ std::string refusalOf(const NewTip& tip, const Play& play, const std::string& da
 
 }  // namespace
 
+std::string CameraCalibration::refusalOf(const Eigen::Vector2i& size) const {
+  if (image_size.isZero() || size.isZero() || size == image_size) return "";
+  const auto text = [](const Eigen::Vector2i& s) { return std::to_string(s.x()) + " x " + std::to_string(s.y()); };
+  return "the calibration is of images of " + text(image_size) + " px, this one has " + text(size) +
+         " px: images that are binned or cropped need a calibration of their own";
+}
+
+std::string CameraCalibration::warning() const {
+  if (!image_size.isZero()) return "";
+  return "the calibration does not say of which size its images were (width, height): calibrate again, or add them";
+}
+
 Interval CameraCalibration::interval(CalibrationParameter parameter) const {
   const double deviation = std::sqrt(covariance(parameter, parameter));
   const double half = studentLimit(kIntervalConfidence, isOfFocus(parameter) ? focus_freedom : freedom) * deviation;

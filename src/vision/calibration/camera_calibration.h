@@ -23,6 +23,7 @@ struct CameraCalibration {
   bool mirrored = false;                                      ///< see imageAxes()
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();           ///< m, place of the tip that is seen at (tip_u, tip_v)
   Eigen::Vector2d reference_pixel = Eigen::Vector2d::Zero();  ///< px, of the tips' history; the image's centre
+  Eigen::Vector2i image_size = Eigen::Vector2i::Zero();       ///< px, width and height; 0: not known, in an old file
   CalibrationVector<double> value = CalibrationVector<double>::Zero();  ///< 0 where not estimated
   std::array<bool, kCalibrationParameters> estimated{};
   Eigen::Matrix<double, kCalibrationParameters, kCalibrationParameters> covariance =
@@ -39,6 +40,11 @@ struct CameraCalibration {
 
   Eigen::Matrix<double, 2, 3> axes() const { return imageAxes(value, mirrored); }        ///< px/m
   Eigen::Vector3d backlash() const { return value.segment<3>(kBacklashX).cwiseMax(0); }  ///< m, for Play
+  /// Empty, or why the calibration is none of images of this width and height (px): binned or cropped images have
+  /// other pixels. Any are taken while one of both sizes is not known (0).
+  std::string refusalOf(const Eigen::Vector2i& size) const;
+  /// Empty, or that nobody can tell whether the calibration is that of these images.
+  std::string warning() const;
   /// 95 % interval by Student's t; a point where the parameter was not estimated.
   Interval interval(CalibrationParameter parameter) const;
 

@@ -5,7 +5,6 @@
 #include <system_error>
 
 #include "base/errors.h"
-#include "vision/camera/image_file.h"
 #include "vision/camera/natural_order.h"
 
 namespace microinjection {
@@ -26,16 +25,25 @@ FolderSource::FolderSource(const std::string& folder, double rate, bool loop) : 
 
 std::optional<CameraFrame> FolderSource::next() {
   // One loop without a readable image ends the search.
-  for (std::size_t tried = 0; tried < paths_.size(); ++tried) {
-    if (position_ == paths_.size()) {
-      if (!loop_) return std::nullopt;
-      position_ = 0;
+  for (std::size_t tried = 0; tried < paths_.size();) {
+    if (!file_) {
+      if (position_ == paths_.size()) {
+        if (!loop_) return std::nullopt;
+        position_ = 0;
+      }
+      file_.emplace(paths_[position_++]);
+      page_ = 0;
     }
-    const std::string& path = paths_[position_++];
+    const std::string& path = paths_[position_ - 1];
     const double stamp = static_cast<double>(count_++) * period_;
-    LoadedImage loaded = loadImage(path);
-    if (loaded.refusal.empty()) return CameraFrame{loaded.image, stamp, fs::path(path).filename().string()};
-    report(path + ": " + loaded.refusal);
+    LoadedImage loaded = file_->load(page_);
+    const std::string name = file_->nameOf(page_);
+    if (++page_ == file_->pages()) {
+      file_.reset();
+      ++tried;
+    }
+    if (loaded.refusal.empty()) return CameraFrame{loaded.image, stamp, name};
+    report((fs::path(path).parent_path() / name).string() + ": " + loaded.refusal);
   }
   return std::nullopt;
 }

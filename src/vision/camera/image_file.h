@@ -1,7 +1,12 @@
 #pragma once
 
+#include <cstddef>
 #include <opencv2/core/mat.hpp>
+#include <optional>
 #include <string>
+#include <vector>
+
+#include "vision/camera/tiff_pages.h"
 
 namespace microinjection {
 
@@ -14,9 +19,26 @@ struct LoadedImage {
 /// Whether the file's name ends like that of an image.
 bool hasImageName(const std::string& path);
 
-/// Reads an image file. Refuses files that are absent, empty, truncated, no image, or not of 8 or
-/// 16 bit. Does not throw. The decoders fill the missing part of a truncated JPEG or PNG file with
-/// grey: the end of the file is checked here.
+/// An image file, which may be a stack: a TIFF file of several pages. Thumbnails are no pages.
+class ImageFile {
+ public:
+  /// Does not throw: load() has the reason why there is no image.
+  explicit ImageFile(const std::string& path);
+
+  std::size_t pages() const { return tiff_ && !tiff_->empty() ? tiff_->size() : 1; }
+  /// Reads a page, from 0. Refuses files that are absent, empty, truncated, no image, or not of 8 or 16 bit without
+  /// sign. Where 0 is white (TIFF), the grey levels are turned. Does not throw. The decoders fill the missing part of a
+  /// truncated JPEG or PNG file with grey: the end of the file is checked here.
+  LoadedImage load(std::size_t page) const;
+  /// The file's name without its folder; of a stack with the page: "stack.tif, page 2 of 3".
+  std::string nameOf(std::size_t page) const;
+
+ private:
+  std::string path_;
+  std::optional<std::vector<TiffPage>> tiff_;  ///< none: another format
+};
+
+/// Reads a file of one image. A stack is refused, whose other pages would be left out.
 LoadedImage loadImage(const std::string& path);
 
 }  // namespace microinjection

@@ -25,13 +25,17 @@ VisionConfig VisionConfig::standard() {
   return read(nothing);
 }
 
-double VisionConfig::pixelSize() const {
+double VisionConfig::pixelSize(const Eigen::Vector2i& image, std::string& warning) const {
+  warning.clear();
   if (pixel_size > 0) return pixel_size;
   const std::string path = calibrationPath(calibration);
   if (!std::filesystem::exists(path))
     throw ConfigError("pixel_size = 0: unknown, and there is no calibration " + path +
                       ": calibrate, or set pixel_size");
-  return readCalibration(path).value[kPixelSize];
+  const CameraCalibration read = readCalibration(path);
+  if (const std::string refusal = read.refusalOf(image); !refusal.empty()) throw ConfigError(path + ": " + refusal);
+  if (const std::string doubt = read.warning(); !doubt.empty()) warning = path + ": " + doubt;
+  return read.value[kPixelSize];
 }
 
 }  // namespace microinjection

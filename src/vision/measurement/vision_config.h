@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
 
 #include "vision/detection/specimen_tracker.h"
@@ -22,8 +23,9 @@ struct VisionConfig {
   /// What read() gives without any key. The pipettes' detectors have other defaults.
   static VisionConfig standard();
   static VisionConfig read(ConfigReader& reader);
-  /// m of the specimen. Throws ConfigError when it is not known.
-  double pixelSize() const;
+  /// m of the specimen, for images of this width and height (px; 0: not known yet). Throws ConfigError when it is not
+  /// known, or the calibration is of images of another size. `warning`: the calibration's, see CameraCalibration.
+  double pixelSize(const Eigen::Vector2i& image, std::string& warning) const;
 };
 
 }  // namespace microinjection

@@ -53,6 +53,23 @@ TEST(CalibrationFile, ComesBackBitByBit) {
   }
 }
 
+TEST(CalibrationFile, HasTheSizeOfItsImages) {
+  CameraCalibration calibration = calibrated();
+  const std::string old = toYaml(calibration);
+  EXPECT_EQ(old.find("width"), std::string::npos);
+  EXPECT_NE(calibrationFromYaml(old, "file").warning(), "");
+  EXPECT_EQ(calibrationFromYaml(old, "file").refusalOf({640, 480}), "");
+  calibration.image_size = {1392, 1040};
+  const CameraCalibration read = calibrationFromYaml(toYaml(calibration), "file");
+  EXPECT_EQ(read.image_size, calibration.image_size);
+  EXPECT_EQ(read.warning(), "");
+  EXPECT_EQ(read.refusalOf({1392, 1040}), "");
+  EXPECT_EQ(read.refusalOf({0, 0}), "");  // no image was seen yet
+  for (const Eigen::Vector2i& size : {Eigen::Vector2i(696, 520), Eigen::Vector2i(1392, 1000)})
+    EXPECT_NE(read.refusalOf(size).find("1392 x 1040 px, this one has " + std::to_string(size.x())), std::string::npos);
+  EXPECT_NE(errorsOf(replaced("points:", "width: 1392\npoints:")).find("height"), std::string::npos);
+}
+
 TEST(CalibrationFile, IsWrittenAndRead) {
   const std::string path = ::testing::TempDir() + "/calibration_file_test/camera.yaml";
   writeCalibration(path, calibrated());

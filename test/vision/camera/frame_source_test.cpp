@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -7,6 +8,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 #include <string>
+#include <vector>
 
 #include "base/errors.h"
 #include "vision/camera/folder_source.h"
@@ -149,7 +151,107 @@ TEST_F(FrameSourceTest, FramesKeepTheirDepthAndColour) {
 
 TEST_F(FrameSourceTest, FloatingPointImagesAreRefused) {
   cv::imwrite(path("1.tif"), cv::Mat(4, 4, CV_32F, cv::Scalar(0.5)));
-  EXPECT_EQ(loadImage(path("1.tif")).refusal, "has neither 8 nor 16 bit");
+  EXPECT_EQ(loadImage(path("1.tif")).refusal, "has grey levels of floating point, allowed 8 or 16 bit");
+}
+
+/// Files as imwrite() does not write them: with another value of a tag.
+class TiffFileTest : public FrameSourceTest {
+ protected:
+  static constexpr int kPhotometric = 262, kSampleFormat = 339;
+
+  void setTag(const std::string& name, int tag, int value) const {
+    std::fstream file(path(name), std::ios::binary | std::ios::in | std::ios::out);
+    const auto number = [&](std::size_t place, int bytes) {
+      unsigned char raw[4] = {};
+      file.seekg(static_cast<std::streamoff>(place));
+      file.read(reinterpret_cast<char*>(raw), bytes);
+      return static_cast<std::size_t>(raw[0] | raw[1] << 8 | raw[2] << 16 | raw[3] << 24);
+    };
+    const std::size_t directory = number(4, 4), entries = number(directory, 2);
+    for (std::size_t i = 0; i < entries; ++i) {
+      if (number(directory + 2 + 12 * i, 2) != static_cast<std::size_t>(tag)) continue;
+      file.seekp(static_cast<std::streamoff>(directory + 2 + 12 * i + 8));
+      const char raw[2] = {static_cast<char>(value & 0xFF), static_cast<char>(value >> 8)};
+      file.write(raw, 2);
+      return;
+    }
+    FAIL() << "tag " << tag << " is not in " << name;
+  }
+  void writePages(const std::string& name, const std::vector<cv::Mat>& pages) const {
+    ASSERT_TRUE(cv::imwritemulti(path(name), pages));
+  }
+};
+
+TEST_F(TiffFileTest, WhereZeroIsWhiteTheLevelsAreTurned) {
+  for (const int type : {CV_8U, CV_16U}) {
+    write("white.tif", grey(100, type));
+    setTag("white.tif", kPhotometric, 0);
+    const LoadedImage loaded = loadImage(path("white.tif"));
+    ASSERT_EQ(loaded.refusal, "");
+    const int white = type == CV_8U ? 255 : 65535;
+    EXPECT_EQ(type == CV_8U ? loaded.image.at<unsigned char>(2, 2) : loaded.image.at<unsigned short>(2, 2),
+              white - 100);
+  }
+}
+
+TEST_F(TiffFileTest, LevelsWithASignAreRefused) {
+  write("signed.tif", grey(65000, CV_16U));
+  setTag("signed.tif", kSampleFormat, 2);
+  EXPECT_EQ(loadImage(path("signed.tif")).refusal, "has grey levels with a sign, allowed 8 or 16 bit without");
+}
+
+TEST_F(TiffFileTest, AllPagesOfAStackAreRead) {
+  writePages("b.tif", {grey(10), grey(20), grey(30)});
+  write("a.png", grey(5));
+  const ImageFile file(path("b.tif"));
+  ASSERT_EQ(file.pages(), 3u);
+  for (int page = 0; page < 3; ++page)
+    EXPECT_EQ(file.load(static_cast<std::size_t>(page)).image.at<unsigned char>(1, 1), 10 * (page + 1));
+  EXPECT_NE(file.load(3).refusal, "");
+  EXPECT_EQ(loadImage(path("b.tif")).refusal, "has 3 pages, allowed 1");
+  FolderSource source(folder.string(), 10, true);
+  EXPECT_EQ(source.next()->name, "a.png");
+  for (int page = 1; page <= 3; ++page) {
+    const std::optional<CameraFrame> frame = source.next();
+    ASSERT_TRUE(frame);
+    EXPECT_EQ(frame->name, "b.tif, page " + std::to_string(page) + " of 3");
+    EXPECT_DOUBLE_EQ(frame->stamp.value(), 0.1 * page);
+    EXPECT_EQ(frame->image.at<unsigned char>(1, 1), 10 * page);
+  }
+  EXPECT_EQ(source.next()->name, "a.png");
+}
+
+TEST_F(TiffFileTest, AStackThatIsCutIsRefused) {
+  cv::Mat noise(64, 64, CV_8U);
+  cv::randu(noise, 0, 256);
+  writePages("cut.tif", {noise, noise});
+  const auto size = fs::file_size(path("cut.tif"));
+  for (const double share : {0.98, 0.8, 0.6, 0.45, 0.2, 0.01}) {
+    fs::resize_file(path("cut.tif"), static_cast<std::uintmax_t>(share * static_cast<double>(size)));
+    const ImageFile file(path("cut.tif"));
+    EXPECT_NE(file.load(file.pages() - 1).refusal, "") << share;
+  }
+}
+
+/// Of a stack of more than 4 GB: one directory, and the other images behind the first.
+TEST_F(TiffFileTest, AStackOfImageJThatAReaderDoesNotSeeIsRefused) {
+  std::string file("II*\0", 4);
+  const auto add = [&](std::uint32_t value, int bytes) {
+    for (int i = 0; i < bytes; ++i) file += static_cast<char>(value >> (8 * i));
+  };
+  const auto tag = [&](std::uint32_t name, std::uint32_t type, std::uint32_t count, std::uint32_t value) {
+    add(name, 2), add(type, 2), add(count, 4), add(value, 4);
+  };
+  const std::string text = "ImageJ=1.53t\nimages=7\nslices=7\n";
+  add(8, 4), add(8, 2);
+  const std::uint32_t behind = 8 + 2 + 8 * 12 + 4, length = static_cast<std::uint32_t>(text.size()) + 1;
+  tag(256, 3, 1, 4), tag(257, 3, 1, 4), tag(258, 3, 1, 8), tag(259, 3, 1, 1), tag(262, 3, 1, 1);
+  tag(270, 2, length, behind), tag(273, 4, 1, behind + length), tag(279, 4, 1, 16);
+  add(0, 4);
+  file += text + '\0' + std::string(16 * 7, 'x');
+  std::ofstream(path("big.tif"), std::ios::binary) << file;
+  const std::string refusal = loadImage(path("big.tif")).refusal;
+  EXPECT_NE(refusal.find("stack of ImageJ of 7 images"), std::string::npos) << refusal;
 }
 
 class VideoSourceTest : public FrameSourceTest {
