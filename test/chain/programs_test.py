@@ -105,6 +105,15 @@ class ProgramsTest(unittest.TestCase):
         self.for_each(lambda node: self.check_refused(node, f"refused_{node}", {**GOOD[node], "forse_limit": 3},
                                                       ["forse_limit", "unknown key"]))
 
+    def test_a_second_one_of_a_name_is_refused_and_the_first_goes_on(self):
+        first = Program("display", "twice", {})
+        until(lambda: first.ended() or "/twice" in rosnode.get_node_names(), "a node that the master knows")
+        status, said = Program("display", "twice", {}).result()
+        self.assertEqual(status, 1, said)
+        self.assertIn("a node of this name runs already", said)
+        self.assertFalse(first.ended(), "the first one was ended")
+        self.assertEqual(first.end()[0], 0)
+
     def test_keys_need_a_terminal(self):
         self.check_refused("keyboard_hand", "refused_without_terminal", {}, ["needs a terminal"], terminal=False)
 

@@ -34,13 +34,19 @@ void JoyAdapter::receive(const sensor_msgs::Joy& joy) {
 
 std::optional<HandReading> JoyAdapter::read(const Cycle::Tick& tick) {
   const sensor_msgs::Joy* joy = joy_.get(tick.now);
-  const auto stick = joy ? stick_.read(joy->axes, joy->buttons) : std::nullopt;
+  const auto stick = joy ? stick_.read(joy->axes, joy->buttons, tick.now.toSec()) : std::nullopt;
   if (!stick) {
     stick_.reset();
     return std::nullopt;
   }
   // The stamp is the present time: the joystick keeps its position until it publishes a change.
   return HandReading{stick->position, tick.now, false, stick->operator_present};
+}
+
+std::string JoyAdapter::invalidReason() const {
+  if (!stick_.repeats()) return "";
+  return "the stick repeats one deflection: a hand changes it now and then; is the receiver's link lost? Let it go "
+         "first";
 }
 
 }  // namespace microinjection

@@ -28,6 +28,7 @@ class JoyAdapter : public HapticAdapter {
   JoyAdapter(Cycle& cycle, const JoyConfig& config);
 
   std::optional<HandReading> read(const Cycle::Tick& tick) override;
+  std::string invalidReason() const override;
   void render(const Eigen::Vector3d&, const Cycle::Tick&) override {}
   std::vector<std::string> takeCommands() override { return std::exchange(commands_, {}); }
 

@@ -9,6 +9,7 @@
 
 #include "base/console_relay.h"
 #include "nodes/bus/ending.h"
+#include "nodes/bus/namesake.h"
 #include "nodes/bus/ros_bus.h"
 #include "nodes/runtime/parameter_texts.h"
 #include "nodes/runtime/real_time.h"
@@ -35,6 +36,13 @@ int runNode(int argc, char** argv, const std::string& name, Priority priority = 
   ros::init(argc, argv, name, ending == ShutdownMode::kInGoodOrder ? ros::init_options::NoSigintHandler : 0);
   // roscpp handles only SIGINT. The other signals, too, must stop a device before the end.
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) std::signal(number, [](int) { ros::requestShutdown(); });
+  if (const std::string other = livingNamesake(); !other.empty()) {
+    std::fprintf(stderr,
+                 "%s: a node of this name runs already (%s). End that session first, or give this one a master of its "
+                 "own (ROS_MASTER_URI).\n",
+                 ros::this_node::getName().c_str(), other.c_str());
+    return 1;
+  }
   prefer(priority);
   if (ending == ShutdownMode::kInGoodOrder) endInGoodOrder();
   // The handle outlives the try block: the end of the last one shuts ROS and its log down.

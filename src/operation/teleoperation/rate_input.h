@@ -14,6 +14,7 @@ struct RateInputConfig {
   Eigen::Vector3d deflection = {0.015, 0.015, 0.015};  ///< m of the hand at an axis value of 1; negative: reversed
   double centre = 0.1;                                 ///< 1, axis values below it count as released
   int dead_man = -1;                                   ///< dead-man button; -1: none
+  double renewal = 1.5;  ///< s at full deflection, longer at a smaller one, for which an unchanged deflection counts
 
   static RateInputConfig read(ConfigReader& reader);
 };
@@ -23,6 +24,10 @@ struct RateInputConfig {
 /// It has no clutch: releasing the stick stops the needle. The operator is present while the
 /// dead-man button is held and the stick was released once since then: pressing the button does not
 /// start a deflected stick's motion.
+///
+/// A hand never holds a stick quite still, but a receiver that has lost its gamepad repeats the last state, with the
+/// dead-man button held. An unchanged deflection therefore counts only for a while, which bounds the needle's way. A
+/// device that rests off its zero repeats that deflection, too: it becomes the zero.
 class RateInput {
  public:
   explicit RateInput(const RateInputConfig& config) : config_(config) {}
@@ -31,15 +36,21 @@ class RateInput {
     Eigen::Vector3d position;  ///< m
     bool operator_present = false;
   };
-  /// Returns empty when the joystick lacks a configured axis or button, or an axis is not within
-  /// -1.5..1.5.
-  std::optional<Reading> read(const std::vector<float>& axes, const std::vector<int>& buttons);
+  /// `time`: s, never set back. Returns empty when the joystick lacks a configured axis or button, or an axis is not
+  /// within -1.5..1.5, or while repeats().
+  std::optional<Reading> read(const std::vector<float>& axes, const std::vector<int>& buttons, double time);
   /// The joystick is stale: the stick must be released again.
   void reset() { released_ = false; }
+  /// Whether the deflection has not changed for longer than RateInputConfig::renewal allows.
+  bool repeats() const { return repeats_; }
 
  private:
   RateInputConfig config_;
-  bool released_ = false;  ///< the stick was released since the dead-man button is held
+  bool released_ = false;                           ///< the stick was released since the dead-man button is held
+  Eigen::Vector3d zero_ = Eigen::Vector3d::Zero();  ///< shares of the axes, of a device that rests there
+  Eigen::Vector3d last_ = Eigen::Vector3d::Zero();  ///< shares
+  double changed_ = 0;                              ///< s, time of the last change
+  bool repeats_ = false;
 };
 
 }  // namespace microinjection
