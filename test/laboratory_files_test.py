@@ -258,6 +258,10 @@ class LaboratoryFiles(InFolder):
         for name, text in (('whole numbers', whole), ('with points', whole.replace(',', '.'))):
             with self.subTest(name):
                 self.assert_found(text, said=['is taken for a number with a separator of thousands'])
+        either = [['"%s"' % cell for cell in grouped(force + 5, ' ', ',', 3)]]
+        self.assert_each_refused({'decimals or thousands': (
+            table([numpy.arange(len(time)), 1e3 * position, *either], 'time_ms,position_nm,force_nN', number='%d'),
+            'the comma may be the decimal sign, or separate thousands')})
 
     def test_a_table_begins_where_its_rows_do(self):
         text, spaced = table(self.way.columns()), rows(self.way.columns(), '   ')
@@ -416,6 +420,11 @@ class LaboratoryFiles(InFolder):
                 self.assert_found(table(record), said=['the force breaks down', '80 samples'])
                 self.assert_found(table([*record, (time > self.way.time[-1]).astype(float)], TITLES + ',punctured'),
                                   said=['80 rows from the puncture on'])
+
+    def test_a_tip_that_snaps_in_punctures_nothing(self):
+        time, position, force = self.way.columns()
+        near = (position > 4.7) & (position < 5.2)  # um
+        self.assert_found(table([time, position, force - near * 3 * (1 - (position - 4.7) / 0.5)]))
 
     def test_a_scene_in_no_family_is_told_why(self):
         self.put('record.csv', table(self.way.columns()))

@@ -359,30 +359,40 @@ class TableReader {
         cut_off_ = i + 1;
       } else {
         std::string text = "has " + std::to_string(cells.size()) + " cells, the table has " + std::to_string(width_);
-        if (separator_ == ',')
+        if (separator_ == ',' && cells.size() > width_)
           text += "; a comma is the separator here, and cannot be the decimal sign, too, but in quotes";
         fail(i, text + ": '" + shown(lines_[i]) + "'");
       }
     }
   }
 
+  /// Of a column: the last number as 1,234, whose sign may be of decimals or of thousands, and what tells.
+  struct InThrees {
+    std::string text;
+    double most_first = 0;  ///< before the sign
+    double most_plain = 0;  ///< of the numbers without a sign
+
+    /// 7,000 in a column with 990 is no 7: its decimals would not all be three or none.
+    bool areThousands() const { return !text.empty() && most_plain >= 100 && most_plain > 2 * most_first; }
+  };
+
   /// The sign that the numbers have. Digits in threes may be either: others tell.
   void chooseDecimalSign() {
     std::size_t points = 0, commas = 0, unclear = 0;
-    std::vector<std::string> in_threes(width_);
-    std::vector<bool> has_plain(width_);
+    std::vector<InThrees> in_threes(width_);
     eachRow([&](std::size_t i, const Cells& cells) {
       for (std::size_t c = 0; c < cells.size(); ++c) {
         const Cell& cell = cells[c];
         if (cell.text.find_first_of(".,") == std::string::npos) {
-          has_plain[c] =
-              has_plain[c] || (numberIn(cell.text, '.') && cell.text.find_first_of("eE") == std::string::npos);
+          in_threes[c].most_plain = std::max(in_threes[c].most_plain, std::abs(numberIn(cell.text, '.').value_or(0)));
           continue;
         }
         const bool by_point = numberIn(cell.text, '.').has_value(), by_comma = numberIn(cell.text, ',').has_value();
         if (by_point && by_comma) {
           unclear = i + 1;
-          in_threes[c] = cell.text;
+          in_threes[c].text = cell.text;
+          const std::string first = cell.text.substr(0, cell.text.find_first_of(".,"));
+          in_threes[c].most_first = std::max(in_threes[c].most_first, std::abs(numberIn(first, '.').value_or(0)));
         }
         if (by_point && !by_comma && points == 0) points = i + 1;
         if (by_comma && !by_point && commas == 0) commas = i + 1;
@@ -392,14 +402,21 @@ class TableReader {
       fail(std::max(points, commas) - 1, "the decimal sign is another one than in line " +
                                              std::to_string(std::min(points, commas)) + ": '" +
                                              shown(lines_[std::max(points, commas) - 1]) + "'");
-    // 7,000 in a column with 35 is no 7: decimals would not all be three, or none.
-    for (std::size_t c = 0; points == 0 && commas == 0 && c < width_; ++c) {
-      if (in_threes[c].empty() || !has_plain[c]) continue;
-      sign_ = in_threes[c].find(',') != std::string::npos ? '.' : ',';
-      table_.notes.push_back("'" + in_threes[c] + "' is taken for a number with a separator of thousands");
+    const bool is_unclear = points == 0 && commas == 0 && unclear > 0;
+    for (const InThrees& column : in_threes) {
+      if (!is_unclear || !column.areThousands()) continue;
+      sign_ = column.text.find(',') != std::string::npos ? '.' : ',';
+      table_.notes.push_back("'" + column.text + "' is taken for a number with a separator of thousands");
       return;
     }
-    if (points == 0 && commas == 0 && unclear > 0 && lines_[unclear - 1].find(',') != std::string::npos &&
+    for (const InThrees& column : in_threes) {
+      const bool has_comma = column.text.find(',') != std::string::npos;
+      if (is_unclear && has_comma && (separator_ == ',' || column.most_plain > 0))
+        fail(unclear - 1, "'" + column.text +
+                              "': the comma may be the decimal sign, or separate thousands: must be one " +
+                              "that other numbers show");
+    }
+    if (is_unclear && lines_[unclear - 1].find(',') != std::string::npos &&
         lines_[unclear - 1].find('.') == std::string::npos && separator_ != ',')
       commas = unclear;
     sign_ = commas > 0 ? ',' : '.';

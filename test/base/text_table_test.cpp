@@ -118,8 +118,12 @@ TEST_F(TextTableTest, DigitsInThreesBesideFewerAreNoDecimals) {
   for (const std::string mark : {",", "."}) {
     const TextTable table = read("t;x\n35;0\n70;990\n1" + mark + "105;1" + mark + "020\n");
     EXPECT_EQ(table.columns[0].values[2], 1105) << mark;
-    EXPECT_TRUE(hasNote(table, "'1" + mark + "105' is taken for a number with a separator of thousands"));
+    EXPECT_TRUE(hasNote(table, "'1" + mark + "020' is taken for a number with a separator of thousands"));
   }
+  const std::string decimals = "t;x\n1.035;2\n2.070;3\n8;4\n";
+  EXPECT_EQ(read(decimals).columns[0].values[1], 2.07);
+  EXPECT_NE(refusal(withCommas(decimals)).find("'2,070': the comma may be the decimal sign, or"), std::string::npos);
+  EXPECT_NE(refusal("t,x\n\"1,035\",2\n\"1,070\",3\n").find("'1,070': the comma may be"), std::string::npos);
   EXPECT_EQ(read("t;x\n1,035;2,000\n1,070;2,500\n").columns[0].values[1], 1.07);
   EXPECT_EQ(read("t;x\n1.035;2.000\n1.070;2.500\n").columns[0].values[1], 1.07);
 }

@@ -201,24 +201,21 @@ void leaveOutFirst(ForceCurve& curve, std::size_t count) {
     values->erase(values->begin(), values->begin() + static_cast<std::ptrdiff_t>(count));
 }
 
-/// By a first estimate, with and without a drift. It takes means: a contact at the end of a very long way is lost in
-/// them, or known coarsely. It is then looked for in the last half, the last quarter and so on. None: there is no
-/// contact.
-std::optional<std::size_t> samplesInContact(ForceCurve curve) {
-  std::optional<std::size_t> fewest;
-  for (; curve.size() > kFewestSearched; leaveOutFirst(curve, curve.size() / 2)) {
+/// By a first estimate. It takes means: a contact at the end of a very long way is lost in them, or known coarsely. It
+/// is then looked for in the last half, the last quarter and so on. None: there is no contact.
+std::optional<std::size_t> samplesInContact(const ForceCurve& curve) {
+  for (const bool drift : {true, false}) {  // a drift alone may look like a contact
     std::optional<std::size_t> found;
-    for (const bool drift : {false, true}) {
-      const ContactGuess guess = guessContact(curve, drift);
+    for (ForceCurve part = curve; part.size() > kFewestSearched; leaveOutFirst(part, part.size() / 2)) {
+      const ContactGuess guess = guessContact(part, drift);
       if (!guess.touched) continue;
-      const auto inside = static_cast<std::size_t>(
-          std::count_if(curve.position.begin(), curve.position.end(), [&](double x) { return x > guess.contact; }));
-      found = std::min(found.value_or(inside), inside);
+      found = static_cast<std::size_t>(
+          std::count_if(part.position.begin(), part.position.end(), [&](double x) { return x > guess.contact; }));
+      if (static_cast<double>(*found) > kKnown * static_cast<double>(part.size())) break;
     }
-    if (found) fewest = found;
-    if (found && *found > kKnown * static_cast<double>(curve.size())) break;
+    if (found) return found;
   }
-  return fewest;
+  return std::nullopt;
 }
 
 }  // namespace

@@ -113,14 +113,16 @@ std::optional<std::size_t> crestBeforePuncture(const std::vector<double>& positi
   if (least_fall > range) return std::nullopt;
   const auto at = [&](std::size_t i) { return smooth.begin() + static_cast<std::ptrdiff_t>(i); };
   std::size_t crest = 0;
-  double before = smooth[0];  // the least so far
   for (std::size_t i = 1; i < smooth.size(); ++i) {
     if (smooth[i] >= smooth[crest]) crest = i;
     // A crest that is too far back: the highest of those behind it takes its place.
     while (crest < i && position[i] - position[crest] > sudden)
       crest = static_cast<std::size_t>(std::max_element(at(crest + 1), at(i + 1)) - smooth.begin());
-    before = std::min(before, smooth[i]);
-    if (smooth[crest] - smooth[i] > std::max(least_fall, kFall * (smooth[crest] - before))) return crest;
+    // A force that falls from nothing is of a tip that snaps in.
+    const double fall = smooth[crest] - smooth[i];
+    if (fall < least_fall) continue;
+    const double rise = smooth[crest] - *std::min_element(at(0), at(crest + 1));
+    if (rise > least_fall && fall > kFall * rise) return crest;
   }
   return std::nullopt;
 }

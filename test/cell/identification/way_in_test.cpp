@@ -88,6 +88,9 @@ TEST(CrestBeforePuncture, IsTheHighestSampleBeforeASuddenFall) {
   const auto early = crestBeforePuncture(path.position, force);
   ASSERT_TRUE(early);
   EXPECT_NEAR(static_cast<double>(*early), 299, 3);
+  // A tip that snaps in punctures nothing.
+  for (std::size_t i = 0; i < force.size(); ++i) force[i] = 1e-9 * (i < 300 ? 0 : i - 350.0);
+  EXPECT_FALSE(crestBeforePuncture(path.position, force));
   // A fall over a third of the way is a drift, or a cell that relaxes.
   for (std::size_t i = 0; i < force.size(); ++i) force[i] = 1e-9 * (i < 320 ? i : 320 - 0.6 * (i - 320.0));
   EXPECT_FALSE(crestBeforePuncture(path.position, force));
