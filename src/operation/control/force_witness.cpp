@@ -8,6 +8,7 @@ namespace microinjection {
 namespace {
 
 constexpr double kFallen = 0.9;  ///< of the largest force: a smaller one has fallen
+constexpr int kLaterFelt = 200;  ///< samples, by which one force may tell a puncture before the other one
 
 }  // namespace
 
@@ -23,12 +24,14 @@ ForceWitness::ForceWitness(const DetectionConfig& detection, const WitnessConfig
 void ForceWitness::reset() {
   monitor_.reset();
   punctured_ = false;
+  since_puncture_ = 0;
   largest_ = 0;
 }
 
 void ForceWitness::rearm() {
   monitor_.rearm();
   punctured_ = false;
+  since_puncture_ = 0;
   largest_ = 0;
 }
 
@@ -44,11 +47,17 @@ void ForceWitness::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis,
   if (monitor_.confirmed() && !*monitor_.confirmed()) rearm();  // it was noise
   if (!monitor_.touched()) return;
   punctured_ = punctured_ || monitor_.punctured();
+  since_puncture_ += punctured_;
   largest_ = std::max(largest_, monitor_.force());
 }
 
 std::string ForceWitness::disagreement(const NeedleMonitor& acting) const {
   if (!heard_ || !monitor_.ready() || !acting.ready() || !(acting.touched() || monitor_.touched())) return "";
+  // A model whose membrane fails earlier than the real one says nothing of the sensor.
+  if (punctured_)
+    return config_.measured && since_puncture_ > kLaterFelt
+               ? "the sensor has felt a puncture, the prediction has not: is the cell's puncture force too large?"
+               : "";
   const bool acting_more = acting.touched() && (!monitor_.touched() || acting.force() >= monitor_.force());
   const NeedleMonitor &more = acting_more ? acting : monitor_, &less = acting_more ? monitor_ : acting;
   const std::string sensor = "the sensor", prediction = "the prediction";

@@ -47,6 +47,7 @@ class ForceWitness {
   Eigen::Vector3d tip_ = Eigen::Vector3d::Zero(), axis_ = Eigen::Vector3d::UnitZ();  ///< m; of the last step
   bool heard_ = false;                                                               ///< in the last step
   bool punctured_ = false;  ///< a puncture was felt since the touch
+  int since_puncture_ = 0;  ///< samples
   double largest_ = 0;      ///< N, of the smoothed force, since the touch
 };
 

@@ -58,8 +58,8 @@ TEST_F(InjectionSafetyTest, TheSetPointWaitsForANeedleThatStandsStill) {
 
 /// Whoever holds the rig: the set-point is the needle's place meanwhile, and a person lets the injection go on.
 TEST_F(InjectionSafetyTest, ARigThatDoesNotFollowPausesTheInjection) {
-  for (const InjectionState state : {InjectionState::kApproach, InjectionState::kIndent, InjectionState::kInject,
-                                     InjectionState::kWithdraw}) {
+  for (const InjectionState state :
+       {InjectionState::kApproach, InjectionState::kIndent, InjectionState::kInject, InjectionState::kWithdraw}) {
     SCOPED_TRACE(toText(state));
     rig_ = SpringRig();
     enable();

@@ -10,8 +10,8 @@
 
 namespace microinjection {
 
-/// A needle that follows its set-point with a lag while input.rig_hold is empty, in front of an elastic cell whose membrane fails at a force and then
-/// drags on the needle; an injector that works when it is asked to. Steps of 1 ms.
+/// A needle that follows its set-point with a lag while input.rig_hold is empty, in front of an elastic cell whose
+/// membrane fails at a force and then drags on the needle; an injector that works when it is asked to. Steps of 1 ms.
 struct SpringRig {
   static constexpr double kStep = 1e-3;  ///< s
 
