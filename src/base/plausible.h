@@ -24,7 +24,7 @@ namespace plausible {
 
 inline constexpr PlausibleRange kCellDiameter{"m", {1e-6, 5e-3}};
 inline constexpr PlausibleRange kCellRadius{"m", {0.5e-6, 2.5e-3}};
-inline constexpr PlausibleRange kCellModulus{"Pa", {1, 1e7}};
+inline constexpr PlausibleRange kCellModulus{"Pa", {1, 1e9}};  ///< envelopes: 60 MPa
 inline constexpr PlausibleRange kFilamentModulus{"Pa", {1e3, 1e12}};
 inline constexpr PlausibleRange kBendingStiffness{"N m^2", {1e-30, 1e-15}};
 inline constexpr PlausibleRange kTipRadius{"m", {1e-8, 1e-3}};

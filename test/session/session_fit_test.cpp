@@ -276,7 +276,7 @@ TEST_F(SessionFitTest, ACellInAnotherUnitIsNamed) {
                 .find("scene.yaml: cell/diameter = 56.0: must be 1e-6 .. 5e-3 m; 56 um would be 5.6e-5"),
             std::string::npos)
       << refused(oocyte("{force: 7.5e-6}", 56));
-  EXPECT_NE(refused(large(1, 0.5)).find("cell/material/young_modulus = 0.5: must be 1 .. 1e7 Pa; 0.5 kPa would be 500"),
+  EXPECT_NE(refused(large(1, 0.5)).find("cell/material/young_modulus = 0.5: must be 1 .. 1e9 Pa; 0.5 kPa would be 500"),
             std::string::npos);
 }
 

@@ -178,7 +178,7 @@ TEST(SceneCheck, RefusesValuesInAnotherUnit) {
   expectIn(with({"cell", "layers", "0", "outer_radius"}, "28"),
            {"cell/layers/0/outer_radius = 28 m: must be 5e-7 .. 2.5e-3 m; 28 um would be 2.8e-5"});
   expectIn(with({"cell", "layers", "1", "material", "young_modulus"}, "0.5"),
-           {"cell/layers/1/material/young_modulus = 0.5 Pa: must be 1 .. 1e7 Pa; 0.5 kPa would be 500"});
+           {"cell/layers/1/material/young_modulus = 0.5 Pa: must be 1 .. 1e9 Pa; 0.5 kPa would be 500"});
   expectIn(with({"cell", "layers", "1", "surface_tension"}, "35"),
            {"cell/layers/1/surface_tension = 35 N/m: must be 0 .. 1 N/m; 35 mN/m would be 0.035"});
   expectIn(with({"cell", "material", "viscoelasticity"}, "{prony: [{modulus_ratio: 1, relaxation_time: 1e8}]}", kGood),
