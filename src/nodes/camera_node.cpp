@@ -105,6 +105,7 @@ void CameraNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   const CameraStreamState state = stream_->state();
   const double age = 1e-9 * static_cast<double>(static_cast<std::int64_t>(now.toNSec()) - published_);
   status.summary(diagnostic_msgs::DiagnosticStatus::OK, "publishing");
+  if (!state.settings.empty()) status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, state.settings);
   if (!state.report.empty()) status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, state.report);
   if (state.ended) {
     status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, "the recording has ended");

@@ -44,6 +44,7 @@ VisionNode::Parameters VisionNode::Parameters::read(const Bus& bus) {
   reader.text("scene", parameters.scene);
   reader.text("families", parameters.families);
   parameters.vision = VisionConfig::read(reader);
+  acceptImageTransport(reader);
   reader.finish();
   return parameters;
 }
@@ -82,6 +83,7 @@ std::string VisionNode::refusalOf(const sensor_msgs::Image& message, const ros::
   const ros::Time& stamp = message.header.stamp;
   if (const std::string defect = imageDefect(message); !defect.empty()) return defect;
   if (isAhead(stamp, now)) return "its stamp is ahead of now";
+  if (!stamp_.isZero() && stamp == stamp_) return "its stamp is that of the last one: the driver must stamp each image";
   const double age = secondsBetween(stamp, now);
   if (age > parameters_.vision.image_timeout) return "it is " + std::to_string(age) + " s old";
   if (message.data == last_data_) return "the camera repeats its last image";
@@ -131,6 +133,11 @@ void VisionNode::onImage(const sensor_msgs::Image& message) {
 
 double VisionNode::processingTime() const {
   return bus_.isVirtual() ? 1e-9 * static_cast<double>(bus_.steady().toNSec()) : threadCpuTime();
+}
+
+std::string VisionNode::refusal() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return refusal_;
 }
 
 Eigen::Vector2i VisionNode::imageSize() const {
@@ -225,7 +232,9 @@ void VisionNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.summary(diagnostic_msgs::DiagnosticStatus::OK, "images are fresh");
   if (age < 0 || age > parameters_.vision.image_timeout)
     status.mergeSummary(diagnostic_msgs::DiagnosticStatus::ERROR,
-                        std::string(kImageTopic) + (age < 0 ? " is silent" : " is stale"));
+                        std::string(kImageTopic) + (!refusal().empty() ? ": no image is taken: " + refusal()
+                                                    : age < 0          ? " is silent"
+                                                                       : " is stale"));
   if (!calibration_warning_.empty()) status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, calibration_warning_);
   const SpecimenView& view = tracker_.view();
   const auto add = [&](const char* name, const Finding& finding) {

@@ -45,6 +45,7 @@ class VisionNode {
   void onImage(const sensor_msgs::Image& message);
   std::string refusalOf(const sensor_msgs::Image& message, const ros::Time& now) const;
   double processingTime() const;  ///< s of processor time; in virtual time s of that, since no machine may change it
+  std::string refusal() const;    ///< of the last image; empty: accepted
   Eigen::Vector2i imageSize() const;  ///< px, of the last accepted image; 0: none
   void readPixelSize();
   void publish(const std_msgs::Header& header, const Frame& frame, double processing_time);

@@ -7,19 +7,27 @@
 #include <opencv2/core/mat.hpp>
 #include <string>
 
+#include "base/config_reader.h"
 #include "nodes/bus/bus.h"
 
 namespace microinjection {
 
+/// Empty, or why images cannot be received from a topic: it is one of a transport, such as /camera/image/compressed.
+std::string topicDefect(const std::string& topic);
+
+/// Takes the parameter of a node's transport (`image_transport`), which belongs to that library.
+void acceptImageTransport(ConfigReader& reader);
+
 /// Receives a camera's images and reports the exceptions of `handler`. Their stamps are not checked.
+/// @throws ConfigError topicDefect()
 Subscription subscribeImages(Bus& bus, const std::string& topic, std::uint32_t queue,
                              const std::function<void(const sensor_msgs::Image&)>& handler);
 
-/// Empty, or why an image must not be read: its size or length is wrong.
+/// Empty, or why an image must not be read: its size or length is wrong, or it has no stamp.
 std::string imageDefect(const sensor_msgs::Image& message);
 
-/// The pixels of a message: grey, BGR or BGRA, not copied; other colours and Bayer patterns become
-/// grey of the same depth. Throws cv_bridge::Exception for a format that is not known. @pre
+/// The pixels of a message: grey, BGR or BGRA, not copied in the byte order of this computer; other colours and Bayer
+/// patterns become grey of the same depth. Throws cv_bridge::Exception for a format that is not known. @pre
 /// imageDefect() is empty
 cv::Mat pixelsOf(const sensor_msgs::Image& message);
 

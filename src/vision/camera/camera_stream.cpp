@@ -2,6 +2,7 @@
 
 #include <cstring>
 #include <utility>
+#include <vector>
 
 #include "base/errors.h"
 
@@ -29,9 +30,15 @@ CameraStream::CameraStream(const FrameSourceConfig& config, Open open)
 
 void CameraStream::open() {
   source_ = open_();
-  for (const std::string& report : source_->takeReports()) note(report);
+  const std::vector<std::string> reports = source_->takeReports();
+  if (!is_device_) {
+    for (const std::string& report : reports) note(report);
+  }
   const std::lock_guard<std::mutex> lock(mutex_);
   ++state_.opened;
+  if (!is_device_) return;
+  state_.settings.clear();
+  for (const std::string& report : reports) addSetting(report);
 }
 
 std::optional<CameraFrame> CameraStream::next() {
@@ -49,7 +56,12 @@ std::optional<CameraFrame> CameraStream::next() {
   } catch (const std::exception& error) {  // OpenCV's, or of memory
     note(error.what());
   }
-  for (const std::string& report : source_->takeReports()) note(report);
+  // What a device says of a frame that it delivers is of its settings: the frames after it are no better.
+  for (const std::string& report : source_->takeReports()) {
+    if (!frame || !is_device_) note(report);
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (frame && is_device_) addSetting(report);
+  }
   if (!frame && is_device_) {
     source_.reset();
     return std::nullopt;
@@ -72,6 +84,10 @@ bool CameraStream::repeats(const CameraFrame& frame) {
   const std::lock_guard<std::mutex> lock(mutex_);
   ++state_.repeated;
   return true;
+}
+
+void CameraStream::addSetting(const std::string& report) {
+  state_.settings += (state_.settings.empty() ? "" : "; ") + report;
 }
 
 void CameraStream::note(const std::string& report) {

@@ -18,6 +18,7 @@ struct CameraStreamState {
   unsigned opened = 0;    ///< times that the source was opened
   bool ended = false;     ///< of a recording
   std::string report;     ///< the last one; empty: none
+  std::string settings;   ///< of a device: what is not as asked for, since it was opened; empty: nothing
 };
 
 /// Frames of a source, one after the other, at their pace.
@@ -45,6 +46,7 @@ class CameraStream {
   void open();
   bool repeats(const CameraFrame& frame);
   void note(const std::string& report);
+  void addSetting(const std::string& report);  ///< with the lock
 
   bool is_device_;
   Open open_;

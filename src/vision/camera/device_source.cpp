@@ -4,6 +4,8 @@
 #include <cctype>
 #include <cmath>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "base/config_errors.h"
 
@@ -14,6 +16,8 @@ constexpr double kAutomaticOff = 1;         // of V4L2's exposure_auto: manual
 constexpr double kSettingTolerance = 0.01;  // of the value: devices round to their own steps
 
 constexpr char kInPipeline[] = "is a pipeline: its size, format, rate, exposure and gain belong in its text";
+
+const std::vector<std::string> kDeepFormats = {"Y16 ", "Y12 ", "Y10 "};
 
 const Range kAskedSide = Range::closed(0, 16384);  // px
 
@@ -109,6 +113,10 @@ void DeviceSource::configure() {
     const int found = static_cast<int>(capture_->get(cv::CAP_PROP_FOURCC));
     if (found != wanted) report("format = " + config_.format + ": the device has " + formatOf(found));
   }
+  // OpenCV makes 8 bit of every format unless it is told not to.
+  const std::string format = formatOf(static_cast<int>(capture_->get(cv::CAP_PROP_FOURCC)));
+  is_deep_ = std::find(kDeepFormats.begin(), kDeepFormats.end(), format) != kDeepFormats.end();
+  if (is_deep_) capture_->set(cv::CAP_PROP_CONVERT_RGB, 0);
   if (config_.width > 0) {
     set(cv::CAP_PROP_FRAME_WIDTH, "width", config_.width, " px");
     set(cv::CAP_PROP_FRAME_HEIGHT, "height", config_.height, " px");
@@ -140,6 +148,10 @@ std::optional<CameraFrame> DeviceSource::next() {
   } catch (const cv::Exception& error) {
     report("device = " + config_.device + ": " + error.err);
     return std::nullopt;
+  }
+  if (is_deep_ && image.depth() == CV_8U) {
+    report("format: the device has 16 bit, of which OpenCV leaves 8");
+    is_deep_ = false;  // one report is enough
   }
   const double milliseconds = capture_->get(cv::CAP_PROP_POS_MSEC);
   std::optional<double> stamp;

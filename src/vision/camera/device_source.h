@@ -45,6 +45,7 @@ class DeviceSource : public FrameSource {
 
   DeviceSourceConfig config_;
   std::unique_ptr<cv::VideoCapture> capture_;
+  bool is_deep_ = false;  ///< its format has more than 8 bit
   long count_ = 0;
 };
 

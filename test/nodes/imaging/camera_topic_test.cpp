@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "cell_microinjection/MeasureCell.h"
+#include "nodes/imaging/image_input.h"
 #include "placed_specimen.h"
 
 namespace microinjection {
@@ -72,6 +75,48 @@ TEST_F(CameraTopicTest, TheCellIsSeenInTheFormatsOfDrivers) {
   expectTheCellIsSeen(converted(rendered(), "bayer_rggb8", 1));
   expectTheCellIsSeen(converted(rendered(), "bgra8", 4));
   expectTheCellIsSeen(converted(rendered(), "mono16", 2, true));
+}
+
+TEST_F(CameraTopicTest, TheBytesOfABigEndianImageAreTurned) {
+  sensor_msgs::Image image = converted(rendered(), "mono16", 2, true);
+  for (std::size_t i = 0; i < image.data.size(); i += 2) std::swap(image.data[i], image.data[i + 1]);
+  image.is_bigendian = 1;
+  expectTheCellIsSeen(image);
+}
+
+TEST_F(CameraTopicTest, DiagnosticsSayWhyNoImageIsTaken) {
+  const auto said = [&](const std::string& reason) {
+    const diagnostic_msgs::DiagnosticStatus* status = session_.diagnostics().of("vision: images");
+    return status && status->level == diagnostic_msgs::DiagnosticStatus::ERROR &&
+           status->message.find(reason) != std::string::npos;
+  };
+  sensor_msgs::Image image = rendered();
+  image.header.stamp = ros::Time();
+  send(image);
+  EXPECT_TRUE(session_.until([&] { return said("it has no stamp"); }, 2));
+  EXPECT_EQ(states().count(), 0u);
+  image = rendered();
+  const ros::Time stamp = image.header.stamp;
+  send(image);
+  EXPECT_EQ(states().count(), 1u);
+  for (int i = 0; i < 8; ++i) {
+    image = rendered();
+    image.header.stamp = stamp;
+    send(image);
+  }
+  EXPECT_EQ(states().count(), 1u);
+  EXPECT_TRUE(session_.until([&] { return said("its stamp is that of the last one"); }, 2));
+  image = rendered();
+  image.encoding = "unheard_of";
+  send(image);
+  EXPECT_TRUE(session_.until([&] { return said("its format or length is wrong"); }, 2));
+}
+
+TEST(ImageTopic, OfATransportIsRefusedWithTheWayToUnpackIt) {
+  EXPECT_EQ(topicDefect("/camera/image_raw"), "");
+  EXPECT_EQ(topicDefect("/compressed"), "");
+  const std::string defect = topicDefect("/camera/image/compressed");
+  EXPECT_NE(defect.find("republish compressed in:=/camera/image raw"), std::string::npos) << defect;
 }
 
 TEST_F(CameraTopicTest, AShortImageIsNotRead) {

@@ -48,12 +48,15 @@ TEST(DeviceSource, ReadsAPipelineToItsEnd) {
 class FakeDevice : public cv::VideoCapture {
  public:
   bool set(int property, double value) override {
+    if (property == cv::CAP_PROP_CONVERT_RGB && converts) values[property] = value;
     if (property == cv::CAP_PROP_GAIN) values[property] = std::min(value, 5.0);
     if (property == cv::CAP_PROP_AUTO_EXPOSURE || property == cv::CAP_PROP_EXPOSURE) values[property] = value;
     return true;  // as drivers do that keep their own value
   }
   double get(int property) const override { return values.count(property) ? values.at(property) : 0; }
   bool read(cv::OutputArray image) override {
+    // As OpenCV: 16 bit only without conversion.
+    buffer.create(48, 64, values[cv::CAP_PROP_CONVERT_RGB] == 0 && is_deep ? CV_16U : CV_8U);
     if (frames == 2) return false;
     buffer.setTo(10 * ++frames);
     values[cv::CAP_PROP_POS_MSEC] = 1500 + 40 * frames;
@@ -63,8 +66,10 @@ class FakeDevice : public cv::VideoCapture {
 
   cv::Mat buffer = cv::Mat(48, 64, CV_8U);
   int frames = 0;
+  bool is_deep = false, converts = true;
   std::map<int, double> values = {{cv::CAP_PROP_FRAME_WIDTH, 64},
                                   {cv::CAP_PROP_FRAME_HEIGHT, 48},
+                                  {cv::CAP_PROP_CONVERT_RGB, 1},
                                   {cv::CAP_PROP_FOURCC, cv::VideoWriter::fourcc('Y', 'U', 'Y', 'V')}};
 };
 
@@ -79,6 +84,22 @@ TEST(DeviceSource, ReportsWhatTheDeviceRefused) {
   const std::vector<std::string> refused = source.takeReports();
   EXPECT_EQ(refused, (std::vector<std::string>{"format = Y16: the device has YUYV",
                                                "width = 320 px: the device has 64 px", "gain = 20: the device has 5"}));
+}
+
+TEST(DeviceSource, SixteenBitStaySixteenOrItIsReported) {
+  for (const bool converts : {true, false}) {
+    auto device = std::make_unique<FakeDevice>();
+    device->values[cv::CAP_PROP_FOURCC] = cv::VideoWriter::fourcc('Y', '1', '6', ' ');
+    device->is_deep = true;
+    device->converts = converts;
+    DeviceSource source({}, std::move(device));
+    const std::optional<CameraFrame> first = source.next(), second = source.next();
+    ASSERT_TRUE(first && second);
+    EXPECT_EQ(first->image.depth(), converts ? CV_16U : CV_8U);
+    const std::vector<std::string> reports = source.takeReports();
+    ASSERT_EQ(reports.size(), converts ? 0U : 1U);
+    if (!converts) EXPECT_NE(reports[0].find("16 bit, of which OpenCV leaves 8"), std::string::npos);
+  }
 }
 
 TEST(DeviceSource, FramesHaveTheDriversStampAndTheirOwnPixels) {
