@@ -122,6 +122,17 @@ class TheHouse(unittest.TestCase):
         self.assertFalse(problems, '\n'.join(problems))
 
 
+    def test_installs_what_installed_tools_import(self):
+        """A tool finds those beside it also where only the installed ones are."""
+        installed = set(re.findall(r'tools/(\w+)\.py', (SOURCE / 'nodes/CMakeLists.txt').read_text(encoding='utf-8')))
+        self.assertIn('session_on_hosts', installed)
+        tools = {path.stem for path in (SOURCE / 'tools').glob('*.py')}
+        for name in sorted(installed):
+            text = (SOURCE / 'tools' / f'{name}.py').read_text(encoding='utf-8')
+            imported = set(re.findall(r'^\s*(?:import|from) (\w+)', text, re.MULTILINE))
+            self.assertEqual((imported & tools) - installed, set(), f'{name}.py imports what is not installed')
+
+
 class TheRule(unittest.TestCase):
     """Each way to break the rule, in a small house of its own, is reported."""
 
