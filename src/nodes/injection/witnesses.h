@@ -27,9 +27,12 @@ class Witnesses {
   void fill(const Eigen::Isometry3d& needle, const ros::Time& now, InjectionController::Input& input);
 
  private:
+  void receiveChange(const cell_microinjection::CellParameters& message, const ros::Time& received);
+
   double timeout_;
   boost::shared_ptr<const geometry_msgs::WrenchStamped> force_;
-  ros::Time changed_;  ///< arrival
+  ros::Time changed_;    ///< arrival of a change that makes the force fall suddenly
+  double modulus_ = -1;  ///< Pa, largest one served since then; negative: none is known
   ros::Time cell_received_;
   bool can_be_punctured_ = false, inside_ = false;
   Subscription force_topic_, changes_, cell_;

@@ -85,11 +85,30 @@ TEST_F(WitnessesTest, NewsOfAChangedCellKeepItsFallFromBeingAPuncture) {
   ASSERT_TRUE(chain.session.until([&] { return chain.status().depth > 2e-6; }));
   cell_microinjection::CellParameters news;
   news.header.stamp = chain.session.world().bus().now();
+  news.name = {"young_modulus"};
+  news.value = {7e3};
   chain.session.world().say("cell/parameters", news);
   share = 0.4;
   chain.session.run(0.1);
   EXPECT_EQ(chain.status().punctures, 0u);
   EXPECT_EQ(chain.status().state, "indent");
+}
+
+/// A twin serves what it has learned, again and again: that must not hide a puncture.
+TEST_F(WitnessesTest, NewsOfSmallChangesHideNoPuncture) {
+  InjectionChain chain;
+  double modulus = 17.9e3;
+  chain.session.world().repeat<cell_microinjection::CellParameters>("cell/parameters", [&] {
+    cell_microinjection::CellParameters news;
+    news.header.stamp = chain.session.world().bus().now();
+    news.name = {"young_modulus", "height"};
+    news.value = {modulus, 1e-7};
+    modulus = modulus > 17.9e3 ? 17.8e3 : 18e3;
+    return std::optional(news);
+  });
+  chain.session.run(0.1);
+  chain.say("approach");
+  EXPECT_TRUE(chain.session.until([&] { return chain.status().punctures > 0; }, 30)) << chain.status();
 }
 
 }  // namespace
