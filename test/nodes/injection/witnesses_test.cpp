@@ -13,9 +13,9 @@ class WitnessesTest : public testing::Test {
   using Wrench = geometry_msgs::WrenchStamped;
   static constexpr const char* kMeasured = "overrides.injection_controller.force_source:=measured";
 
-  /// From now on each value of the sensor is what `value` makes of it.
-  void alterSensor(InjectionChain& chain, std::function<void(Wrench&)> change) {
-    chain.session.executive().network().alter("/force_sensor/measured_cf", [change](Passage passage) {
+  /// From now on each value of the topic is what `value` makes of it.
+  void alterForce(InjectionChain& chain, const std::string& topic, std::function<void(Wrench&)> change) {
+    chain.session.executive().network().alter(topic, [change](Passage passage) {
       auto altered = boost::make_shared<Wrench>(*boost::static_pointer_cast<const Wrench>(passage.message));
       change(*altered);
       passage.message = altered;
@@ -35,7 +35,8 @@ class WitnessesTest : public testing::Test {
 
 TEST_F(WitnessesTest, ADeadSensorHoldsTheApproach) {
   InjectionChain chain({kMeasured}, "tough_oocyte");
-  alterSensor(chain, [](Wrench& wrench) { wrench.wrench.force.x = wrench.wrench.force.y = wrench.wrench.force.z = 0; });
+  alterForce(chain, "/force_sensor/measured_cf",
+             [](Wrench& wrench) { wrench.wrench.force.x = wrench.wrench.force.y = wrench.wrench.force.z = 0; });
   chain.say("approach");
   expectHeldBeforeAPuncture(chain);
 }
@@ -43,7 +44,7 @@ TEST_F(WitnessesTest, ADeadSensorHoldsTheApproach) {
 TEST_F(WitnessesTest, ASensorThatFreezesAtTheTouchHoldsTheNeedle) {
   InjectionChain chain({kMeasured}, "tough_oocyte");
   std::optional<geometry_msgs::Wrench> frozen;
-  alterSensor(chain, [&](Wrench& wrench) {
+  alterForce(chain, "/force_sensor/measured_cf", [&](Wrench& wrench) {
     if (!frozen && chain.cell().in_contact) frozen = wrench.wrench;
     if (frozen) wrench.wrench = *frozen;
   });
@@ -55,12 +56,7 @@ TEST_F(WitnessesTest, AForceThatFallsWithoutAPunctureGivesNoPulse) {
   // As by a served cell that becomes softer: the cell is intact, and says so.
   InjectionChain chain({}, "tough_oocyte");
   double share = 1;
-  chain.session.executive().network().alter("/cell/predicted_cf", [&share](Passage passage) {
-    auto altered = boost::make_shared<Wrench>(*boost::static_pointer_cast<const Wrench>(passage.message));
-    altered->wrench.force.z *= share;
-    passage.message = altered;
-    return std::vector<Passage>{passage};
-  });
+  alterForce(chain, "/cell/predicted_cf", [&share](Wrench& wrench) { wrench.wrench.force.z *= share; });
   chain.say("approach");
   ASSERT_TRUE(chain.reaches("indent"));
   ASSERT_TRUE(chain.session.until([&] { return chain.status().depth > 2e-6; }));
@@ -73,12 +69,7 @@ TEST_F(WitnessesTest, AForceThatFallsWithoutAPunctureGivesNoPulse) {
 TEST_F(WitnessesTest, NewsOfAChangedCellKeepItsFallFromBeingAPuncture) {
   InjectionChain chain({}, "tough_oocyte");
   double share = 1;
-  chain.session.executive().network().alter("/cell/predicted_cf", [&share](Passage passage) {
-    auto altered = boost::make_shared<Wrench>(*boost::static_pointer_cast<const Wrench>(passage.message));
-    altered->wrench.force.z *= share;
-    passage.message = altered;
-    return std::vector<Passage>{passage};
-  });
+  alterForce(chain, "/cell/predicted_cf", [&share](Wrench& wrench) { wrench.wrench.force.z *= share; });
   chain.session.world().publisher<cell_microinjection::CellParameters>("cell/parameters");
   chain.say("approach");
   ASSERT_TRUE(chain.reaches("indent"));
