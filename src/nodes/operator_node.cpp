@@ -14,8 +14,9 @@ constexpr char kCommand[] = "inject";  ///< the phase that is also a command to 
 }  // namespace
 
 const char* const OperatorNode::kHelp =
-    "operator: a virtual haptic device in a virtual hand that follows a recorded motion.\n"
-    "In: /haptic/servo_cf. Out: /haptic/measured_cp /haptic/clutch /operator/phase\n"
+    "operator: a virtual haptic device in a virtual hand that follows a recorded motion\n"
+    "from the moment at which the needle follows it.\n"
+    "In: /haptic/servo_cf /haptic/loop_state. Out: /haptic/measured_cp /haptic/clutch /operator/phase\n"
     "/controller/state_command (inject).\n";
 
 OperatorNode::Parameters OperatorNode::Parameters::read(const Bus& bus) {
@@ -44,6 +45,11 @@ OperatorNode::OperatorNode(Bus& bus)
       command_output_(cycle_.output<cell_microinjection::StringStamped>("controller/state_command")),
       go_(!parameters_.wait_for_go) {
   force_.one_sender = false;  // the watchdog sends zero force beside the bridge
+  loop_ = bus.subscribe<cell_microinjection::LoopState>("haptic/loop_state", 1, [this](const auto& delivery) {
+    followed_ = followed_ || delivery.message->follows;
+    hold_reason_ = delivery.message->hold_reason;
+  });
+  cycle_.diagnostics().add("motion", [this](auto& status) { report(status); });
   cycle_.onStep([this](const Cycle::Tick& tick) { step(tick); });
 }
 
@@ -57,14 +63,24 @@ bool OperatorNode::mayMove() {
 
 void OperatorNode::step(const Cycle::Tick& tick) {
   if (!mayMove()) return;
-  elapsed_ += tick.dt;
+  if (followed_) elapsed_ += tick.dt;
   const double time = std::max(0.0, elapsed_ - parameters_.start_delay);
   const HandMotion::Sample intended = motion_.at(time);
   const auto force = finiteForce(force_.get(tick.now));
   hand_.step(intended.position, force.value_or(Eigen::Vector3d::Zero()), tick.dt);
   position_.publish(toPose(hand_.position(), tick.now, kHapticFrame));
-  publishClutch(tick.now, intended.clutch);
+  publishClutch(tick.now, followed_ && intended.clutch);
   publishPhase(tick.now, time >= motion_.duration() ? "done" : intended.phase);
+}
+
+void OperatorNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) const {
+  if (!go_) {
+    status.summary(diagnostic_msgs::DiagnosticStatus::OK, "waits for the parameter /session/go");
+  } else if (!followed_) {
+    status.summary(diagnostic_msgs::DiagnosticStatus::WARN, "waits until the needle follows: " + hold_reason_);
+  } else {
+    status.summary(diagnostic_msgs::DiagnosticStatus::OK, "moves: " + phase_published_);
+  }
 }
 
 void OperatorNode::publishClutch(const ros::Time& now, bool pressed) {

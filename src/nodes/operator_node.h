@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "cell_microinjection/LoopState.h"
 #include "cell_microinjection/StringStamped.h"
 #include "nodes/runtime/cycle.h"
 #include "operation/teleoperation/hand_motion.h"
@@ -14,9 +15,11 @@
 
 namespace microinjection {
 
-/// A virtual haptic device and hand. The hand follows a recorded motion and yields to the force.
+/// A virtual haptic device and hand. The hand rests until the needle follows it, then follows a recorded
+/// motion and yields to the force.
 ///
-/// In:  /haptic/servo_cf (WrenchStamped, N; none while it is stale)
+/// In:  /haptic/servo_cf (WrenchStamped, N; none while it is stale), /haptic/loop_state (LoopState: the motion
+///      begins with the first one that says that the needle follows)
 /// Out: /haptic/measured_cp (PoseStamped, m, frame `haptic`), /haptic/clutch (Joy, on change),
 ///      /operator/phase (StringStamped, latched, on change: the motion's phases, then done),
 ///      /controller/state_command (StringStamped: inject, when the phase of that name begins)
@@ -40,6 +43,7 @@ class OperatorNode {
   };
 
   bool mayMove();
+  void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
   void step(const Cycle::Tick& tick);
   void publishClutch(const ros::Time& now, bool pressed);
   void publishPhase(const ros::Time& now, const std::string& phase);
@@ -55,9 +59,12 @@ class OperatorNode {
   Output<cell_microinjection::StringStamped>& command_output_;
   bool go_;                ///< moves, and does not wait for the parameter /session/go
   ros::SteadyTime asked_;  ///< for it
-  double elapsed_ = 0;     ///< s of steps; a stall of the machine pauses the hand
+  bool followed_ = false;  ///< the needle has followed the hand
+  std::string hold_reason_ = "nothing came on /haptic/loop_state";
+  double elapsed_ = 0;  ///< s of steps since then; a stall of the machine pauses the hand
   std::optional<bool> clutch_published_;
   std::string phase_published_;
+  Subscription loop_;
 };
 
 }  // namespace microinjection
