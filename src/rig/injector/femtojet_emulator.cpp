@@ -58,9 +58,11 @@ std::string FemtojetEmulator::enter(const std::string& number, const std::string
   static const std::regex plain("[0-9]+(\\.[0-9]+)?");
   if (!std::regex_match(text, plain)) return kFaulty;
   const double value = std::stod(text);
-  const bool is_time = number == "042";
+  const bool is_time = number == "042" || number == "013";
   if (value > (is_time ? config_.longest : config_.highest / kHectopascal)) return kFaulty;
-  if (is_time) {
+  if (number == "013") {
+    cleans_until_ = time_ + value;
+  } else if (is_time) {
     injection_time_ = value;
   } else if (number == "043") {
     compensation_ = value * kHectopascal;

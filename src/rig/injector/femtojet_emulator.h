@@ -26,8 +26,8 @@ struct FemtojetEmulatorConfig {
 /// enters a parameter, "Cxxx" executes a command or reads a parameter, the replies are "Axxx",
 /// "Axxx=rrrrrrrrrr" and, to an invalid command, "ERR=eee"; upper and lower case. From the program
 /// (AutoInj_GUI): C042, C043 and C044 enter injection time, compensation and injection pressure,
-/// C152, C153 and C154 read them; commands may end with a line feed; each gets two lines; a number
-/// that is read follows a blank.
+/// C152, C153 and C154 read them, C013 cleans with the highest pressure for so long; commands may
+/// end with a line feed; each gets two lines; a number that is read follows a blank.
 ///
 /// Not verified on a device: the content of the first of the two lines (`echo`), the units s and
 /// hPa, the limits, the error numbers (001 here) and the reply time. Errors that can be injected:
@@ -36,14 +36,16 @@ class FemtojetEmulator : public InjectorEmulator {
  public:
   explicit FemtojetEmulator(const FemtojetEmulatorConfig& config = {}) : config_(config) {}
 
-  double pressure() const override { return time_ < injects_until_ ? injection_ : compensation_; }
+  double pressure() const override {
+    return time_ < cleans_until_ ? config_.highest : time_ < injects_until_ ? injection_ : compensation_;
+  }
 
  protected:
   void process(const std::string& bytes, double time) override;
   void advance(double time) override { time_ = std::max(time, time_); }
   void checkError(const std::string& code) const override;
   void failNextCommand(const std::string& code) override { error_ = code; }
-  void interrupt(double time) override { injects_until_ = time; }
+  void interrupt(double time) override { injects_until_ = cleans_until_ = time; }
 
  private:
   std::string handleCommand(const std::string& line);
@@ -55,7 +57,7 @@ class FemtojetEmulator : public InjectorEmulator {
   std::string error_;                              // for the next command; empty: none
   double injection_time_ = 2;                      // s
   double compensation_ = 2500, injection_ = 10e3;  // Pa
-  double injects_until_ = -1;                      // s
+  double injects_until_ = -1, cleans_until_ = -1;  // s
   double time_ = 0;                                // s
 };
 

@@ -39,6 +39,10 @@ TEST(FemtojetEmulator, AnswersThePublicProgram) {
   EXPECT_EQ(secondWord(talk(device, "C153\n", time)), 25);
   EXPECT_EQ(secondWord(talk(device, "C154\n", time)), 100);
   EXPECT_NEAR(device.pressure(), 2500, 1e-9);
+  EXPECT_EQ(talk(device, "C013=0.5\n", time), "C013=0.5\r\nA013\r\n") << "it cleans";
+  EXPECT_NEAR(device.pressure(), 600e3, 1e-9);
+  device.send(time + 0.6);
+  EXPECT_NEAR(device.pressure(), 2500, 1e-9);
 }
 
 TEST(FemtojetEmulator, TakesTheFormsThatTheManualAllows) {

@@ -1,6 +1,7 @@
 #include "rig/devices/eppendorf/eppendorf_emulator.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <optional>
@@ -36,22 +37,21 @@ std::string EppendorfEmulator::error(int code) const {
 }
 
 void EppendorfEmulator::handleCommand(const std::string& command, double time) {
-  const std::string name = command.substr(0, 4);
+  std::string name = command.substr(0, 4);
+  name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
   const auto numbers = numbersIn(command.substr(std::min<std::size_t>(4, command.size())));
-  const bool goes = name == "C007" || name == "C012";
+  const bool goes = name == "C006" || name == "C007" || name == "C012";
   if (!numbers || numbers->size() != (goes ? 6u : 0u)) return reply(error(kParameters), time);
   if ((goes || name == "C008") && !remote_) return reply(error(kNotRemote), time);
   if (name == "C001") return reply("A001 5181 V1.08", time);
-  if (name == "C010") return reply(positionText(), time);
+  if (name == "C009" || name == "C010") return reply(positionText(name == "C009"), time);
   if (name == "C013") {
     at_end_ = "A013";
     return moves() ? void() : comeToRest(time);
   }
   if (goes) {
     if (moves()) return reply(error(kBusy), time);
-    std::array<long, 6> six{};
-    std::copy(numbers->begin(), numbers->end(), six.begin());
-    goTo(six, name == "C007" ? "A007" : "");
+    goTo(*numbers, name == "C006" ? 1 : 1e-6 / config_.microstep, name == "C012" ? "" : "A" + name.substr(1));
     return name == "C012" ? reply("A012", time) : void();
   }
   if (name != "C003" && name != "C004" && name != "C005" && name != "C008") return reply(error(kUnknownCommand), time);
@@ -61,11 +61,13 @@ void EppendorfEmulator::handleCommand(const std::string& command, double time) {
   reply("A" + name.substr(1), time);
 }
 
-void EppendorfEmulator::goTo(const std::array<long, 6>& numbers, const std::string& reply_at_end) {
+/// `unit`: microsteps, of the numbers.
+void EppendorfEmulator::goTo(const std::vector<long>& numbers, double unit, const std::string& reply_at_end) {
   const double furthest = std::round(config_.travel / config_.microstep);
   for (int i = 0; i < 3; ++i) {
-    speeds_[i] = static_cast<double>(std::abs(numbers[i + 3])) * 1e-6 / config_.microstep;
-    const double goal = std::round(static_cast<double>(numbers[i]) * 1e-6 / config_.microstep);
+    const auto at = static_cast<std::size_t>(i);
+    speeds_[i] = static_cast<double>(std::abs(numbers[at + 3])) * unit;
+    const double goal = std::round(static_cast<double>(numbers[at]) * unit);
     end_[i] = speeds_[i] == 0 ? position_[i] : std::clamp(goal, -furthest, furthest);
   }
   at_end_ = reply_at_end;
@@ -82,7 +84,7 @@ void EppendorfEmulator::move(double time, double dt) {
 
 void EppendorfEmulator::comeToRest(double time) {
   endMoving();
-  if (!at_end_.empty()) reply(at_end_ == "A007" ? "A007 " + std::to_string(limits()) : at_end_, time);
+  if (!at_end_.empty()) reply(at_end_ == "A013" ? at_end_ : at_end_ + " " + std::to_string(limits()), time);
   at_end_.clear();
 }
 
@@ -114,13 +116,13 @@ int EppendorfEmulator::limits() const {
   return bits;
 }
 
-std::string EppendorfEmulator::positionText() const {
-  std::string text = "A010";
+std::string EppendorfEmulator::positionText(bool in_microsteps) const {
+  std::string text = in_microsteps ? "A009" : "A010";
   for (int i = 0; i < 3; ++i) {
-    const double um = position_[i] * config_.microstep * 1e6;
+    const double value = in_microsteps ? position_[i] : position_[i] * config_.microstep * 1e6;
     char number[24];
-    std::snprintf(number, sizeof(number), config_.signs_separate && i > 0 ? "%+.*f" : " %.*f", config_.decimals ? 2 : 0,
-                  std::abs(um) < 0.005 ? 0.0 : um);
+    std::snprintf(number, sizeof(number), config_.signs_separate && i > 0 ? "%+.*f" : " %.*f",
+                  config_.decimals && !in_microsteps ? 2 : 0, std::abs(value) < 0.005 ? 0.0 : value);
     text += std::string(number) == " -0" ? " 0" : number;
   }
   return text + " " + std::to_string(limits());

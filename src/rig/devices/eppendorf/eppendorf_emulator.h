@@ -1,14 +1,14 @@
 #pragma once
 
-#include <array>
 #include <string>
+#include <vector>
 
 #include "rig/devices/text_emulator.h"
 
 namespace microinjection {
 
 struct EppendorfEmulatorConfig {
-  double microstep = 0.04e-6;   ///< m; assumed, since the manual's public pages omit it
+  double microstep = 0.04e-6;   ///< m; assumed, since the manual's public pages omit it; an NK 2's is 1 / 25.6e6
   double travel = 10e-3;        ///< m, from 0 to each limit switch
   double answer_time = 3e-3;    ///< s, from the end of a command to the start of its reply; assumed
   bool decimals = false;        ///< reports positions with two decimals
@@ -16,11 +16,13 @@ struct EppendorfEmulatorConfig {
   bool signs_separate = false;  ///< reports "A010 100-200+300 0", as the manual's examples of commands
 };
 
-/// Emulates an Eppendorf PatchMan NP 2. It is based on the manual's command list, not on the
-/// driver: C001, C003, C004, C005, C007, C008, C010, C012 and C013. Assumed, since the manual omits
-/// it: errors are "ERR=nnn" as in a FemtoJet's manual; a go-to while moving is such an error; an
-/// axis rests at its limit switch and sets bit 2i (low) or 2i + 1 (high) of axis i. An injected
-/// error answers the next command, which is not executed.
+/// Emulates an Eppendorf PatchMan NP 2, or a TransferMan NK 2. It is based on the manual's command
+/// list and on AutoInj_GUI, a public program that drives an NK 2, not on the driver: C001, C003,
+/// C004, C005, C007, C008, C010, C012 and C013 of the manual; C006 and C009 of the program, which
+/// are C007 and C010 in microsteps; its commands begin with a small letter, too. Assumed: errors are
+/// "ERR=nnn" as in a FemtoJet's manual; a go-to while moving is such an error; an axis rests at its
+/// limit switch and sets bit 2i (low) or 2i + 1 (high) of axis i. An injected error answers the next
+/// command, which is not executed.
 class EppendorfEmulator : public TextEmulator {
  public:
   explicit EppendorfEmulator(const EppendorfEmulatorConfig& config = {})
@@ -38,11 +40,11 @@ class EppendorfEmulator : public TextEmulator {
   void switchOn() override;
 
  private:
-  void goTo(const std::array<long, 6>& numbers, const std::string& reply_at_end);
+  void goTo(const std::vector<long>& numbers, double unit, const std::string& reply_at_end);
   void comeToRest(double time);
   void stop();
   int limits() const;
-  std::string positionText() const;
+  std::string positionText(bool in_microsteps) const;
 
   EppendorfEmulatorConfig config_;
   Eigen::Vector3d position_ = Eigen::Vector3d::Zero(), end_ = Eigen::Vector3d::Zero();  // microsteps

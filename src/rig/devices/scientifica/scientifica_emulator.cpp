@@ -13,13 +13,16 @@ namespace {
 
 constexpr int kNotUnderstood = 3;
 
-/// Splits a command into words in capitals.
+/// Which axis a word ends with; -1: none. "PX", "ABSZ".
+int letterAxis(const std::string& word) { return static_cast<int>(std::string("XYZ").find(word.back())); }
+
+/// Splits a command into words in capitals; "=" is one that says nothing ("px = 0").
 std::vector<std::string> capitalWords(const std::string& command) {
   std::vector<std::string> words;
   std::istringstream stream(command);
   for (std::string word; stream >> word;) {
     std::transform(word.begin(), word.end(), word.begin(), [](unsigned char each) { return std::toupper(each); });
-    words.push_back(word);
+    if (word != "=") words.push_back(word);
   }
   return words;
 }
@@ -40,6 +43,7 @@ void ScientificaEmulator::switchOn() {
   top_ = isOld() ? 30000 : 2344;
   first_ = isOld() ? 5000 : 391;
   acc_ = isOld() ? 500 : 19531;
+  of_the_knobs_ = {{"JACC", 500}, {"JSPEED", 100}, {"JSSPEED", 10}, {"JDX", 0}, {"JDY", 0}, {"JDZ", 0}, {"ANGLE", 0}};
 }
 
 double ScientificaEmulator::stepsPerSecond(int top) const {
@@ -56,15 +60,25 @@ void ScientificaEmulator::handleCommand(const std::string& command, double time)
     return reply("A", time);
   }
   if (words[0] == "ABS" || words[0] == "REL") return goTo(words, words[0] == "REL", time);
-  if (words[0] == "ZERO") {
-    if (moves()) return reply("E", time);
-    position_.setZero();
+  if (words[0] == "ABSZ" && words.size() == 2) return goTo({"ABS", textOf(0), textOf(1), words[1]}, false, time);
+  if (words[0] == "VJ") return goToEnds(words, time);
+  if (words[0] == "ZERO") return count(Eigen::Vector3d::Zero(), time);
+  if (words[0].size() == 2 && words[0][0] == 'P' && letterAxis(words[0]) >= 0 && words.size() == 2) {
+    const auto value = parseNumber<long>(words[1]);
+    Eigen::Vector3d counted = position_;
+    counted[letterAxis(words[0])] = static_cast<double>(value.value_or(0)) * stepsPerCount();
+    return value ? count(counted, time) : reply(error(kNotUnderstood), time);
+  }
+  if (words[0] == "DESC" && words.size() > 1) {
+    description_ = command.substr(command.find(' ') + 1);
     return reply("A", time);
   }
   if (!replyToQuery(words, time) && !set(words, time)) reply(error(kNotUnderstood), time);
 }
 
-bool ScientificaEmulator::replyToQuery(const std::vector<std::string>& words, double time) {
+bool ScientificaEmulator::replyToQuery(std::vector<std::string> words, double time) {
+  if (words.back() == "?") words.pop_back();  // "JDX ?"
+  if (words.empty()) return false;
   const std::string& word = words[0];
   char text[64] = "";
   if (words.size() == 2 && word == "USTEP" && !isOld() && std::string("XYZ").find(words[1]) != std::string::npos) {
@@ -81,24 +95,33 @@ bool ScientificaEmulator::replyToQuery(const std::vector<std::string>& words, do
     std::snprintf(text, sizeof(text), "0");
   }
   std::string output = text;
+  if (of_the_knobs_.count(word) > 0) output = std::to_string(of_the_knobs_.at(word));
+  if (word == "CURRENT") output = "230 175";
   if (word == "SCIENTIFICA") output = config_.maker;
   if (word == "VER") output = config_.version;
   if (word == "DATE") output = "Scientifica " + config_.version + "\tJan 01 2020\t12:00:00";
   if (word == "TYPE") output = isOld() ? "1.05" : "3.05";
-  if (word == "DESC") output = "PatchStar";
-  if (word == "P" || word == "POS") output = positionText();
+  if (word == "DESC") output = description_;
+  if (word == "P" || word == "POS") output = textOf(0) + "\t" + textOf(1) + "\t" + textOf(2);
+  if (word.size() == 2 && word[0] == 'P' && letterAxis(word) >= 0) output = textOf(letterAxis(word));
   if (output.empty()) return false;
   reply(output, time);
   return true;
 }
 
+/// A number may have decimals (acq4: "TOP 500.000000"); they are dropped.
 bool ScientificaEmulator::set(const std::vector<std::string>& words, double time) {
-  const auto number = words.size() == 2 ? parseNumber<long>(words[1]) : std::nullopt;
+  const auto number = words.size() == 2 ? parseNumber<double>(words[1]) : std::nullopt;
   if (!number) return false;
+  if (of_the_knobs_.count(words[0]) > 0) {
+    of_the_knobs_[words[0]] = static_cast<int>(*number);
+    reply("A", time);
+    return true;
+  }
   const bool speed = words[0] == "TOP" || words[0] == "FIRST";
   if (!speed && words[0] != "ACC") return false;
-  const long least = !isOld() ? 1 : speed ? 1000 : 10, most = isOld() && !speed ? 1000 : isOld() ? 50000 : 1000000;
-  if (*number < least || *number > most) {
+  const double least = !isOld() ? 1 : speed ? 1000 : 10, most = isOld() && !speed ? 1000 : isOld() ? 50000 : 1000000;
+  if (!(*number >= least && *number <= most)) {
     reply("E", time);
     return true;
   }
@@ -117,22 +140,48 @@ void ScientificaEmulator::goTo(const std::vector<std::string>& words, bool relat
         (relative ? position_[static_cast<Eigen::Index>(i) - 1] : 0) + static_cast<double>(*number) * stepsPerCount();
   }
   if (words.size() < 3) return reply(error(kNotUnderstood), time);
+  begin(end, time);
+}
+
+/// "VJ x y z": velocities of the axes; Micro-Manager sends its stage to its corner so. Here it goes
+/// to its limits, straight and at the speed of any move.
+void ScientificaEmulator::goToEnds(const std::vector<std::string>& words, double time) {
+  Eigen::Vector3d end = position_;
+  for (int i = 0; i < 3; ++i) {
+    const auto velocity =
+        words.size() == 4 ? parseNumber<double>(words[static_cast<std::size_t>(i) + 1]) : std::nullopt;
+    if (!velocity) return reply(error(kNotUnderstood), time);
+    if (*velocity != 0) end[i] = std::copysign(config_.travel * kStepsPerMetre, *velocity);
+  }
+  begin(end, time);
+}
+
+/// Begins a move with the speeds of now: acq4 sets others as soon as it has begun.
+void ScientificaEmulator::begin(const Eigen::Vector3d& end, double time) {
   if (moves()) return;
   const double furthest = config_.travel * kStepsPerMetre;
   end_ = end.array().round().max(-furthest).min(furthest);
   reply("A", time);
   stopping_ = false;
-  speed_ = std::min(stepsPerSecond(first_), stepsPerSecond(top_));
+  move_top_ = stepsPerSecond(top_);
+  speed_ = move_least_ = std::min(stepsPerSecond(first_), move_top_);
   beginMoving();
+}
+
+/// Gives the present position other numbers, at rest.
+void ScientificaEmulator::count(const Eigen::Vector3d& position, double time) {
+  if (moves()) return reply("E", time);
+  position_ = position;
+  reply("A", time);
 }
 
 void ScientificaEmulator::move(double /*time*/, double dt) {
   // Small steps, so that the ramps do not depend on the calling rate.
-  const double a = acceleration(), least = std::min(stepsPerSecond(first_), stepsPerSecond(top_));
+  const double a = acceleration(), least = move_least_;
   for (double left = dt; left > 0 && moves(); left -= 0.2e-3) {
     const double h = std::min(left, 0.2e-3), distance = (end_ - position_).norm();
     const bool brakes = stopping_ || speed_ * speed_ / (2 * a) >= distance;
-    speed_ = brakes ? std::max(speed_ - a * h, least) : std::min(speed_ + a * h, stepsPerSecond(top_));
+    speed_ = brakes ? std::max(speed_ - a * h, least) : std::min(speed_ + a * h, move_top_);
     if (speed_ * h >= distance) {
       position_ = end_;
       endMoving();
@@ -153,10 +202,8 @@ void ScientificaEmulator::interrupt(double /*time*/) {
   stopping_ = false;
 }
 
-std::string ScientificaEmulator::positionText() const {
-  std::string text;
-  for (int i = 0; i < 3; ++i) text += (i > 0 ? "\t" : "") + std::to_string(std::lround(position_[i] / stepsPerCount()));
-  return text;
+std::string ScientificaEmulator::textOf(int axis) const {
+  return std::to_string(std::lround(position_[axis] / stepsPerCount()));
 }
 
 }  // namespace microinjection

@@ -4,16 +4,19 @@
 #include <cctype>
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 #include <sstream>
 #include <utility>
 
 #include "base/errors.h"
+#include "base/parse_number.h"
 
 namespace microinjection {
 namespace {
 
 constexpr double kRestCheckPeriod = 0.5e-3;  // s, between two checks whether an axis came to rest
 constexpr std::size_t kLongestRequest = 80;  // characters
+constexpr char kNoReply[] = "--";            // in the place of a message ID
 
 const std::vector<std::string>& rejections() {
   static const std::vector<std::string> names{"AGAIN",          "BADAXIS", "BADCOMMAND", "BADDATA",
@@ -44,6 +47,15 @@ std::string digits(const char* format, int number) {
   char text[16];
   std::snprintf(text, sizeof(text), format, number);
   return text;
+}
+
+/// Removes a whole number from the front; empty: there is none.
+std::optional<int> popNumber(std::vector<std::string>& words) {
+  const auto number = words.empty() || !std::isdigit(static_cast<unsigned char>(words[0][0]))
+                          ? std::nullopt
+                          : parseNumber<int>(words[0]);
+  if (number) words.erase(words.begin());
+  return number;
 }
 
 /// Removes the checksum. Returns whether the line is valid.
@@ -148,11 +160,13 @@ void ZaberEmulator::handleCommand(const std::string& line) {
   if (!checkSum(text)) return;  // ignored
   std::istringstream stream(text);
   Command command;
-  stream >> command.device >> command.axis;
-  if (!stream && !text.empty()) return;
   for (std::string word; stream >> word;) command.words.push_back(word);
-  if (!command.words.empty() && std::isdigit(static_cast<unsigned char>(command.words[0][0]))) {
-    command.id = digits("%02d ", static_cast<int>(std::strtol(command.words[0].c_str(), nullptr, 10) % 100));
+  // Device, axis and message ID precede the command; each may be left out, with those after it.
+  command.device = popNumber(command.words).value_or(0);
+  command.axis = popNumber(command.words).value_or(0);
+  if (const auto id = popNumber(command.words)) command.id = digits("%02d ", *id % 100);
+  if (!command.words.empty() && command.words[0] == kNoReply) {
+    command.answers = false;
     command.words.erase(command.words.begin());
   }
   for (auto& [number, device] : devices_) {
@@ -165,6 +179,7 @@ void ZaberEmulator::handleCommand(int number, Device& device, const Command& com
   const bool there = command.axis == 0 || device.axes.count(command.axis) > 0;
   std::string output = !there ? "RJ BADAXIS" : "RJ " + std::exchange(rejection_, "");
   if (output == "RJ ") output = perform(number, device, command);
+  if (!command.answers) return;
   const int axis = there ? command.axis : 0;
   bool busy = false;
   for (const auto& [axis_number, each] : device.axes) {
@@ -227,7 +242,7 @@ std::vector<std::string> ZaberEmulator::flags(const Device& device, int axis) {
 /// Empty: no setting of a device.
 std::string ZaberEmulator::get(int number, const Device& device, const std::string& name) const {
   if (name == "version") return "OK " + config_.firmware;
-  if (name == "deviceid") return "OK 50000";
+  if (name == "deviceid" || name == "device.id") return "OK 50000";
   if (name == "system.serial") return "OK " + std::to_string(12340 + number);
   if (name == "system.access") return "OK " + std::to_string(device.access);
   if (name == "system.axiscount") return "OK " + std::to_string(device.axes.size());

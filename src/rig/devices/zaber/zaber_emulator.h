@@ -30,7 +30,9 @@ struct ZaberEmulatorConfig {
 /// Emulates Zaber devices with the ASCII protocol. It is based on the protocol's manuals and on
 /// public clients, not on the driver. Sources and unverified points: doc/reference/devices.md.
 ///
-/// Axis 0 is all axes of a device, which replies once, with the data of all of them; device 0 is
+/// "/1 2 7 get pos" asks device 1, axis 2 with message ID 7; each of the three may be left out with
+/// those after it ("/1 get pos", "/home"), and a message ID "--" asks for no reply. Axis 0, or none,
+/// is all axes of a device, which replies once, with the data of all of them; device 0, or none, is
 /// all devices. A reply shows only its most important flag; `warnings` lists all. From firmware
 /// 7.25 on a move may have its own speed and acceleration, in the data of maxspeed and accel;
 /// earlier firmware refuses such a move.
@@ -66,7 +68,8 @@ class ZaberEmulator : public ManipulatorEmulator {
   };
   struct Command {
     int device = 0, axis = 0;
-    std::string id;  // message ID and a blank, or nothing
+    std::string id;       // message ID and a blank, or nothing
+    bool answers = true;  // false: its message ID is "--"
     std::vector<std::string> words;
   };
 

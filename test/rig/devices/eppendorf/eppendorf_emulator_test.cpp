@@ -51,6 +51,40 @@ TEST(EppendorfEmulator, AnswersAGoToAtItsBeginOrAtItsEnd) {
   EXPECT_EQ(client.receive(1), "A007 0\r");
 }
 
+/// A TransferMan NK 2 as AutoInj_GUI has it: 25.6 microsteps a micrometre.
+EppendorfEmulatorConfig transferman() {
+  EppendorfEmulatorConfig config;
+  config.microstep = 1 / 25.6e6;
+  return config;
+}
+
+/// AutoInj_GUI, a public program on cells: line feeds, small letters, micrometres and microsteps.
+TEST(EppendorfEmulator, AnswersWhatAutoInjGuiSends) {
+  EppendorfClient client(transferman());
+  const std::pair<const char*, const char*> lines[] = {
+      {"c010\n", "A010 0 0 0 0\r"},
+      {"c009\n", "A009 0 0 0 0\r"},
+      {"C004\n", "A004\r"},
+      {"C007 -10 20 30 1000 1000 1000\n", "A007 0\r"},
+      {"C009\n", "A009 -256 512 768 0\r"},
+      {"C006 -128 512 -768 25600 25600 25600\n", "A006 0\r"},
+      {"C009\n", "A009 -128 512 -768 0\r"},
+      {"C010\n", "A010 -5 20 -30 0\r"},
+      {"c005\n", "A005\r"},
+  };
+  for (const auto& [line, reply] : lines) EXPECT_EQ(client.answers(line, 0.5), reply) << line;
+  EXPECT_NEAR(client.device->position().z(), -30e-6, 1e-12);
+}
+
+/// 2560 microsteps/s are 100 um/s, and the reply comes at the end.
+TEST(EppendorfEmulator, AGoToInMicrostepsHasTheirSpeeds) {
+  EppendorfClient client(transferman());
+  client.answers("C004\r");
+  EXPECT_EQ(client.answers("C006 2560 0 0 2560 0 0\r", 0.5), "");
+  EXPECT_NEAR(client.device->position().x(), 50e-6, 2.5e-6);
+  EXPECT_EQ(client.receive(1), "A006 0\r");
+}
+
 TEST(EppendorfEmulator, AnAxisWithoutSpeedRests) {
   EppendorfClient client;
   client.answers("C004\r");

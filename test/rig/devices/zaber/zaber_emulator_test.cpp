@@ -86,6 +86,32 @@ TEST(ZaberEmulator, AnswersOnceADeviceWithTheDataOfAllAxes) {
   EXPECT_EQ(three("4 0 get pos"), "");
 }
 
+/// Device, axis and message ID may be left out, from the end on: public clients send "/home", "/get pos", "/1 get pos".
+TEST(ZaberEmulator, UnderstandsShortAddresses) {
+  Device one, three(chain());
+  EXPECT_EQ(one("get pos"), "@01 0 OK IDLE -- 262467 262467 262467\r\n");
+  EXPECT_EQ(one("1 get pos"), "@01 0 OK IDLE -- 262467 262467 262467\r\n");
+  EXPECT_EQ(one("1 2 7 get pos"), "@01 2 07 OK IDLE -- 262467\r\n");
+  EXPECT_EQ(one("1"), "@01 0 OK IDLE -- 0\r\n");
+  EXPECT_EQ(one("1 set comm.alert 0"), "@01 0 OK IDLE -- 0\r\n");
+  EXPECT_EQ(one("get device.id"), "@01 0 OK IDLE -- 50000\r\n");
+  EXPECT_EQ(three("2 get pos"), "@02 0 OK IDLE -- 262467\r\n");
+  EXPECT_EQ(three("get pos"), "@01 0 OK IDLE -- 262467\r\n@02 0 OK IDLE -- 262467\r\n@03 0 OK IDLE -- 262467\r\n");
+  EXPECT_EQ(three("1 move abs 5000"), "@01 0 OK BUSY -- 0\r\n");
+  EXPECT_EQ(one("home"), "@01 0 OK BUSY -- 0\r\n");
+  one.wait(10);
+  EXPECT_NEAR(one.place().norm(), 0, 0.1);
+  EXPECT_EQ(one("nonsense"), "@01 0 RJ IDLE -- BADCOMMAND\r\n");
+  EXPECT_EQ(one("x 1 get pos"), "@01 0 RJ IDLE -- BADCOMMAND\r\n");
+}
+
+TEST(ZaberEmulator, AMessageIdOfTwoDashesAsksForNoReply) {
+  Device one;
+  EXPECT_EQ(one("1 1 -- move rel 5000"), "");
+  one.wait(1);
+  EXPECT_EQ(one("1 1 get pos"), "@01 1 OK IDLE -- 267467\r\n");
+}
+
 TEST(ZaberEmulator, TellsTheSettingsThatClientsAskFor) {
   Device one;
   EXPECT_EQ(one("1 1 get accel"), "@01 1 OK IDLE -- 688\r\n");        // 0.2 m/s^2
