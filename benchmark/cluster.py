@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Work as files: speed-up from one to two workers, overhead of Snakemake, and a sweep on a real Slurm with faults.
 
 - `prepare`: paths of a family's first members, by one and by two workers, in turn. Each task's results are the same bytes.

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """A synthetic user at the operator's console: time from roslaunch to an injected cell by mouse only, and from STOP to rest.
 
 Each run starts session.launch with console:=inject on a virtual display, presses Approach, Indent, Inject and Withdraw as

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """A large surface in rviz, drawn in software, beside a live session: rates, processor time, and the 1 kHz loop meanwhile.
 
 A surface of 10,000 triangles with a moving dent is published 30 times a second to the display node, beside a live session

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Families of cells against the converged solution: members at random that were never solved for.
 
 Compares the served forces and surfaces with converged ones at random motions (angle to 56 degrees, depth to 0.3

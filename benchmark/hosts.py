@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """A session over three hosts and a network that is slow and loses frames: how far the needle moves after each fault.
 
 The hosts are network namespaces, joined by a switch that delays each frame and loses some. After each fault, the time-outs

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Hand to hand: time from a haptic device's pose to the force that comes back to it, for each kind of device.
 
 An emulated device tells its pose at 1 kHz through its driver's topics (CRTK, phantom_omni, ros_geomagic) while a

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """This project's models and other programs on equal meshes and scenes: force, error, time of a step, stability.
 
 Bullet, CalculiX and GetFEM are optional: ./dev setup --peers installs them. Any other program joins by --peer.

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """A live session's 1 kHz: lateness of the cell simulator's periods beside a bare timer loop of the same run.
 
 A period is the time from one step of the cell simulator to its next, measured in the node: a step follows the needle's

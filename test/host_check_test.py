@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """The hosts file, and what is checked between two hosts before a session."""
 import socket
 import sys

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """What CalculiX and GetFEM are given by ./dev bench peers: input, and energies. Neither has to be installed."""
 import math
 import sys

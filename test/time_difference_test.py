@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Nodes do not subtract times: the difference of two ros::Time throws beyond 2^31 s, so that one wild stamp would end a
 node. secondsBetween of src/nodes/runtime/stamps.h does not."""
 

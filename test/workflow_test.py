@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """The parts of the workflows that need no engine: the status of a job of Slurm, the array's script, where the programs are.
 ./dev bench cluster runs the whole on a real Slurm."""
 import os

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Everything that the paper has, produced by this code, beside what the paper reported.
 
     report.py --programs DIRECTORY --out DIRECTORY [--jobs N]

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """CalculiX as a program of ./dev bench peers. Usage: CASE RESULT.
 
 Writes CalculiX's input in um, MPa and uN, runs ccx on one thread and reads the reaction of the held nodes. The time of a

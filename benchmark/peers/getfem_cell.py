@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """GetFEM as a program of ./dev bench peers. Usage: ELEMENT [LAW] CASE RESULT, ELEMENT one of p1, p2, p2_p1.
 
 The strain energy of the case is written as such in GetFEM's language, so that it is exactly the case's; LAW replaces it.

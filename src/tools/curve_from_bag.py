@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Writes the force over the travel of a needle from a ROS bag as a table for `identify --record`.
 
     curve_from_bag.py BAG [--out CSV] [--needle TOPIC] [--force TOPIC] [--from S] [--to S]

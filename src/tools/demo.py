@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Runs a session: the virtual operator approaches, touches, indents, punctures, injects and retracts.
 
 Leaves in the output folder: force_depth.csv and force_depth.png (force against depth, and the course of the

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """What is checked between two hosts before a session starts: the way in both directions, clocks, versions of messages.
 
 The master's host answers (CheckServer), each other host asks (check). Names need no check: nodes announce themselves by

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """The file that says which host runs which node: config/hosts.yaml."""
 import ipaddress
 from dataclasses import dataclass, field

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Makes a page of a notebook of injections: what happened, how stiff the cells were, and how well punctures were predicted.
 
     injection_report.py NOTEBOOK_CSV [--out REPORT_HTML] [--day YYYY-MM-DD]

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Makes the pictures of README.md: an injection in the scene and its plot, the console, and a short animation of it.
 
 Leaves scene.png and force_depth.png (of ./dev demo), console.png and injection.gif in the output folder. Draws on a virtual

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Plots the recorder's force_depth.csv: forces against depth, and over time the force at the hand and what was injected.
 Marks where the cell was touched, where each membrane gave way, the injection and the withdrawal.
 

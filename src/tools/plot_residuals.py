@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Plots what `identify --residuals CSV` wrote: the measured and the fitted force over depth, and what is between them.
 
     plot_residuals.py CSV [--out PNG]

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Plots an operator's training sessions, one beside the other: score by its shares, and each measure.
 
     plot_training.py HISTORY_CSV PNG [--operator NAME]

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """A session over several hosts: starts the nodes that run on this one, after the hosts have been checked.
 
     session_on_hosts.py --hosts FILE --host NAME [ARGUMENT:=VALUE ...]   on each host, the master's first

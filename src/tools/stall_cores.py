@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Takes each core away from all other programs now and then, as a busy host does to a virtual machine.
 
 A busy loop of real-time priority runs on each core, about a quarter of the time: for 5 ms to 0.9 s, at random, and on each

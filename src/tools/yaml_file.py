@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Reads YAML files as the C++ programs do, with the numbers of YAML 1.2.
 
 yaml.safe_load has those of YAML 1.1: 1e-6 is a text, 010 is 8, 1:30 is 90; and of a key that is there twice it takes the

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """The chain over three hosts and a network that is slow and loses frames: the needle rests while a part of it is away.
 ./dev bench hosts has all faults."""
 

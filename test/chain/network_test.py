@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """A real rig is not enabled while others can reach its nodes: the driver of a Zaber rig, with its device emulated, in
 network namespaces that the test makes. And the namespace of isolated shells. Needs to be root."""
 

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """session_on_hosts.py: which node it gives to which host, and a session that two hosts start together."""
 
 import os

@@ -19,7 +19,7 @@ command_build() {
 
 command_clean() {
   [[ $# -eq 0 ]] || misuse "clean takes no arguments"
-  rm -rf "$WORKSPACE"/{build,devel,install,src,.catkin_workspace} "$ROOT/build" "$ROOT/out"
+  rm -rf "$WORKSPACE"/{build,devel,install,.install,.install.old,src,.catkin_workspace} "$ROOT/build" "$ROOT/out"
   say "clean: removed what is in catkin_ws, build and out"
 }
 
@@ -41,9 +41,44 @@ link_package() {
 
 # Builds and installs all but tests and benchmarks, then takes the workspace's environment on.
 build_workspace() {
-  build_targets install
-  forget_renamed
+  build_targets
+  install_workspace
   source_workspace
+}
+
+# Installs aside, then swaps: a session that runs, or an interrupt, never sees half an installation. Does nothing when
+# nothing has changed since. The links share the files with the installation of before; CMake replaces files, it does not
+# write into them.
+install_workspace() {
+  local install="$WORKSPACE/install" aside="$WORKSPACE/.install" old="$WORKSPACE/.install.old"
+  if [[ ! -d $install && -d $old ]]; then mv "$old" "$install"; fi  # interrupted between the two steps of a swap
+  rm -rf "$aside" "$old"
+  [[ -n $(newer_than_installation "$install/.complete") ]] || return 0
+  say "build: installs into catkin_ws/install"
+  mkdir -p "$aside$WORKSPACE"
+  if [[ -d $install ]]; then cp -al "$install" "$aside$install"; fi
+  rm -f "$aside$install/.complete"
+  touch "$aside/began"
+  DESTDIR="$aside" cmake --install "$WORKSPACE/build" >/dev/null || fail "the installation failed (messages above)"
+  forget_renamed "$aside"
+  mv "$aside/began" "$aside$install/.complete"
+  if [[ -d $install ]]; then mv "$install" "$old"; fi
+  mv "$aside$install" "$install"
+  rm -rf "$aside" "$old"
+}
+
+# Something that is installed and newer than the file $1; nothing: the installation is complete. A folder of the sources is
+# newer when a file of it has gone; what is built goes with CMake's own lists.
+newer_than_installation() {
+  if [[ ! -f $1 ]]; then
+    echo "$1"
+    return
+  fi
+  find "$ROOT"/{launch,config,urdf,msg,srv,action,src/tools,package.xml} -newer "$1" -not -path '*/__pycache__*' \
+    -print -quit
+  find "$WORKSPACE/devel" "$WORKSPACE/build" -newer "$1" -type f \( -path "$WORKSPACE/devel/lib/*" -not -name '*_test' \
+    -not -name 'bench_*' -not -name '*.pyc' -o -path "$WORKSPACE/devel/include/*" -o -path "$WORKSPACE/devel/share/*" \
+    -o -name cmake_install.cmake \) -print -quit
 }
 
 # What all tests need: the workspace, the tests of the rooms and the programs of the chain, installed beside the nodes.
@@ -53,10 +88,11 @@ build_tests() {
   install_component tests
 }
 
-# An installation never forgets by itself a file that has since been renamed. What CMake has not listed goes.
+# An installation never forgets by itself a file that has since been renamed. What CMake has not listed goes, from the
+# installation below $1.
 forget_renamed() {
-  comm -23 <(find "$WORKSPACE/install" -type f ! -name .catkin ! -name '*.pyc' | sort) <(sort -u "$WORKSPACE"/build/install_manifest*.txt) |
-    xargs -r -d '\n' rm
+  comm -23 <(find "$1$WORKSPACE/install" -type f ! -name .catkin ! -name '*.pyc' | sed "s:^$1::" | sort) \
+    <(sort -u "$WORKSPACE"/build/install_manifest*.txt) | sed "s:^:$1:" | xargs -r -d '\n' rm
 }
 
 # What is installed on request only.
