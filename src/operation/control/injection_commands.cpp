@@ -34,6 +34,7 @@ std::string InjectionController::applyCommand(const std::string& text) {
   if (*command != StateCommand::kUnhome) paused_ = *command == StateCommand::kPause;
   monitor_.skip();  // the next motion does not continue the present one
   target_offset_.reset();
+  withdrawal_.forgive();
   return "";
 }
 

@@ -23,6 +23,7 @@ InjectionController::InjectionController(const InjectionControllerConfig& config
     : config_(config),
       monitor_(config.detection),
       witness_(config.detection, config.witness),
+      withdrawal_(config.guards),
       run_(config.motion, config.guards, config.expectation, config.mode == "automatic"),
       following_error_limit_(followingErrorLimit(config.guards, std::numeric_limits<double>::infinity())) {}
 
@@ -81,6 +82,7 @@ bool InjectionController::isInside(const Eigen::Vector3d& needle, const Eigen::V
 void InjectionController::engage(const Eigen::Vector3d& needle, const Eigen::Vector3d& axis) {
   setpoint_ = needle;
   needle_speed_.reset();
+  withdrawal_.reset();
   // In the cell, home, the contact point and the force at rest stay.
   if (isInside(needle, axis)) return;
   resetMonitors();
@@ -312,17 +314,22 @@ void InjectionController::follow(const Eigen::Vector3d& target, const Input& inp
     hold_reason_ = text.str();
     return;
   }
-  const std::string beyond = guard(input);
-  if (!beyond.empty()) {
-    if (!limited_) stopNeedle(input);
-    hold_reason_ = beyond + ": the needle may only be withdrawn";
-    motion = input.axis * std::max(0.0, (target - *setpoint_).dot(input.axis));
-    // The refused motion is discarded: when the force falls, as in a puncture, the needle must not
-    // catch up.
-    refuse(target - *setpoint_ - motion);
-  }
-  limited_ = !beyond.empty();
+  const bool begins = withdrawal_.step(*input.force, input.axis, monitor_.depth(), dt);
+  if (begins && withdrawal_.lags((*input.needle - *setpoint_).dot(input.axis))) stopNeedle(input);
+  const Eigen::Vector3d wanted = target - *setpoint_;
+  const double out = withdrawal_.followed(wanted.dot(input.axis));
+  motion = withdrawal_.active() ? Eigen::Vector3d(out * input.axis)
+                                : Eigen::Vector3d(wanted + (out - wanted.dot(input.axis)) * input.axis);
+  // The refused motion is discarded: when the force falls, as in a puncture, the needle must not
+  // catch up.
+  refuse(wanted - motion);
+  if (withdrawal_.active()) hold_reason_ = withdrawal_.reason() + ": the needle may only be withdrawn";
+  const Eigen::Vector3d before = *setpoint_;
   if (!move(motion, input, dt)) refuse(motion);
+  const std::string endless = withdrawal_.withdraw((*setpoint_ - before).dot(input.axis));
+  if (endless.empty()) return;
+  endPulse(endless);
+  hold(endless);
 }
 
 void InjectionController::refuse(const Eigen::Vector3d& motion) {

@@ -16,6 +16,7 @@
 #include "operation/control/injection_run.h"
 #include "operation/control/injection_state.h"
 #include "operation/control/needle_monitor.h"
+#include "operation/control/withdrawal_guard.h"
 
 namespace microinjection {
 
@@ -43,10 +44,12 @@ struct InjectionControllerConfig {
 /// (the injection "stops": PAUSED, outcome guard; allowed then are withdraw, home and disable):
 ///
 ///     guard               by hand                       by itself
-///     force, depth        may only be withdrawn         stops, except during withdrawal
+///     force, depth        may only be withdrawn: see    stops, except during withdrawal
+///                         WithdrawalGuard
 ///     expected puncture   -                             indent: stops
 ///     witnesses disagree  -                             stops; a pulse does not begin
 ///     time in a state     -                             stops, also during withdrawal
+///     sensor at fault     PAUSED, a pulse ends          stops, except during withdrawal
 ///     no valid force      held meanwhile                indent, inject: stops; withdraw: none;
 ///                                                       else held meanwhile
 ///     no valid needle     held meanwhile, a pulse ends  indent, inject: stops; else held
@@ -171,8 +174,10 @@ class InjectionController {
   InjectionState injection_ = InjectionState::kIdle;
   NeedleMonitor monitor_;
   ForceWitness witness_;
+  std::string witness_fault_;     ///< of the last step
   bool denies_puncture_ = false;  ///< the model of the predicted force has no puncture where the needle is
   double guard_force_ = 0;        ///< N
+  WithdrawalGuard withdrawal_;    ///< by hand
   HandObserver observer_;
   InjectionRun run_;
   InjectorWait hand_pulse_;
@@ -185,7 +190,6 @@ class InjectionController {
   Eigen::Vector3d home_ = Eigen::Vector3d::Zero();              ///< m, the needle when it was enabled out of the cell
   double rig_speed_ = std::numeric_limits<double>::infinity();  ///< m/s
   double following_error_limit_;                                ///< m, largest distance of set-point and needle
-  bool limited_ = false;                                        ///< by hand: a guard was exceeded in the last step
   bool paused_ = false;                                         ///< by a person, not by a guard
   bool homing_ = false;
   bool unhomed_ = false;  ///< by command, until the needle is home again
