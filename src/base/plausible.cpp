@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <sstream>
+#include <utility>
 #include <vector>
 
 namespace microinjection {
@@ -40,6 +41,13 @@ std::string shortText(double value) {
 }
 
 }  // namespace
+
+std::string unitSlip(double factor, const std::string& unit) {
+  for (const auto& [prefix, size] : {std::pair("m", 1e3), {"u", 1e6}, {"n", 1e9}}) {
+    if (factor > 0.03 * size && factor < 30 * size) return prefix + unit + " for " + unit + "?";
+  }
+  return "";
+}
 
 std::string PlausibleRange::allowed(double value) const {
   const std::string low = shortText(range.low), high = shortText(range.high), of_unit = *unit ? " " : "";

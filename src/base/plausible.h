@@ -18,6 +18,9 @@ struct PlausibleRange {
   void require(const std::string& key, double value, ConfigErrors& errors) const;
 };
 
+/// The slip of the unit by which a value is too large by `factor`: "mN for N?"; empty: by none that is usual.
+std::string unitSlip(double factor, const std::string& unit);
+
 /// Quantities of a scene and of the commands' options. They are wide: a range has to hold every cell and tip that there
 /// is, and to leave out the same number in another unit.
 namespace plausible {

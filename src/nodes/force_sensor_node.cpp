@@ -99,7 +99,9 @@ void ForceSensorNode::advertiseServices() {
   });
   reset_ = bus.advertiseService<Trigger>("~reset", [this](Trigger::Request&, Trigger::Response& response) {
     response.success = true;
-    response.message = source_->overloaded() ? "was overloaded: check the sensor, then tare" : "there was no fault";
+    response.message = source_->overloaded()
+                           ? "was overloaded, " + source_->overloadText() + ": check the sensor, then tare"
+                           : "there was no fault";
     source_->reset();
     return true;
   });
@@ -211,9 +213,9 @@ void ForceSensorNode::report(diagnostic_updater::DiagnosticStatusWrapper& status
   using diagnostic_msgs::DiagnosticStatus;
   const std::string unwritten = file_ ? file_->error() : "";
   if (source_->overloaded()) {
-    status.summary(DiagnosticStatus::ERROR, "overloaded; call the service ~reset");
-  } else if (!source_->invalidReason().empty()) {
-    status.summary(DiagnosticStatus::WARN, source_->invalidReason());
+    status.summary(DiagnosticStatus::ERROR, "overloaded: " + source_->overloadText() + "; call the service ~reset");
+  } else if (!invalidReason().empty()) {
+    status.summary(DiagnosticStatus::WARN, invalidReason());
   } else if (!unwritten.empty()) {
     status.summary(DiagnosticStatus::WARN, unwritten);
   } else {

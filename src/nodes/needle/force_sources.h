@@ -36,6 +36,7 @@ class ForceSource {
   /// invalid.
   virtual std::optional<Signal> read(const Cycle::Tick& tick) = 0;
   virtual bool overloaded() const = 0;
+  virtual std::string overloadText() const = 0;  ///< see OverloadLatch
   virtual void reset() = 0;
   virtual bool saturated() const = 0;
   virtual void report(diagnostic_updater::DiagnosticStatusWrapper&) const {}
@@ -58,6 +59,7 @@ class SimulatedForceSource : public ForceSource {
   Eigen::VectorXd range() const override { return range_; }
   std::optional<Signal> read(const Cycle::Tick& tick) override;
   bool overloaded() const override { return model_.overloaded(); }
+  std::string overloadText() const override { return model_.overloadText(); }
   void reset() override { model_.reset(); }
   bool saturated() const override { return model_.saturated(); }
 
@@ -80,6 +82,7 @@ class SerialForceSource : public ForceSource {
   Eigen::VectorXd range() const override { return overload_.limit(); }
   std::optional<Signal> read(const Cycle::Tick& tick) override;
   bool overloaded() const override { return overload_.latched(); }
+  std::string overloadText() const override { return overload_.text(); }
   void reset() override { overload_.reset(); }
   bool saturated() const override { return device_.reading() && device_.reading()->saturated; }
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) const override;
@@ -102,6 +105,7 @@ class TopicForceSource : public ForceSource {
   Eigen::VectorXd range() const override { return Eigen::VectorXd::Zero(size()); }  ///< calibrated by its own node
   std::optional<Signal> read(const Cycle::Tick& tick) override;
   bool overloaded() const override { return overload_.latched(); }
+  std::string overloadText() const override { return overload_.text(); }
   void reset() override { overload_.reset(); }
   bool saturated() const override { return false; }
 

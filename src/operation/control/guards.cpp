@@ -4,11 +4,19 @@
 #include <cmath>
 #include <sstream>
 
+#include "base/plausible.h"
+
 namespace microinjection {
 namespace {
 
 constexpr double kSpeedWindow = 0.02;  ///< s
 constexpr double kSlack = 1e-6;        ///< m, added to the following error for encoder steps and thermal drift
+
+/// Force over its limit that no cell exerts: the limit is twice the puncture force, and a needle that runs into glass
+/// at the speed limit is stopped earlier.
+constexpr double kNoCell = 10;
+constexpr double kContradicted = 100;  ///< force over the predicted one, which no error of the cell's model explains
+constexpr double kFelt = 1e-9;         ///< N, from where on the model is in contact
 
 /// Reason when a value exceeds its limit, else empty. `of` follows `what` in the text.
 std::string beyond(const char* what, double value, double limit, const char* unit, const char* of = "") {
@@ -63,6 +71,25 @@ std::string forceGuard(const GuardConfig& config, const Eigen::Vector3d& force, 
   std::string reason = beyond("force along the pipette", std::abs(along), config.force_limit, "N");
   if (!reason.empty()) return reason;
   return beyond("force across the pipette", (force - along * axis).norm(), config.lateral_force_limit, "N");
+}
+
+std::string sensorFault(const GuardConfig& config, const Eigen::Vector3d& force, const Eigen::Vector3d& axis,
+                        const std::optional<Eigen::Vector3d>& predicted) {
+  const double along = force.dot(axis), across = (force - along * axis).norm();
+  const double of_limit = std::max(std::abs(along) / config.force_limit, across / config.lateral_force_limit);
+  const double size = force.norm(), model = predicted ? predicted->norm() : 0;
+  const bool contradicted = of_limit > 1 && model >= kFelt && size > kContradicted * model;
+  if (of_limit <= kNoCell && !contradicted) return "";
+  std::ostringstream text;
+  text << "the sensor's force of " << size << " N is ";
+  std::string slip = unitSlip(of_limit, "N");
+  if (of_limit > kNoCell) text << of_limit << " times its limit, which no cell exerts";
+  if (contradicted) {
+    text << (of_limit > kNoCell ? ", and " : "") << size / model << " times the predicted " << model << " N";
+    slip = unitSlip(size / model, "N");
+  }
+  text << ": a fault of the sensor" << (slip.empty() ? "" : ", " + slip);
+  return text.str();
 }
 
 std::string depthGuard(const GuardConfig& config, double depth) {

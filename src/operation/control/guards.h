@@ -51,6 +51,10 @@ std::string rigFault(const GuardConfig& config, const Eigen::Vector3d& needle, c
 /// Reason against going deeper; empty: none. force: N, axis: of the pipette, depth: m past the
 /// contact point.
 std::string forceGuard(const GuardConfig& config, const Eigen::Vector3d& force, const Eigen::Vector3d& axis);
+/// Why a force (N) of the sensor is none of a cell but a fault of the sensor, or of its unit; empty: it may be one.
+/// `predicted` (N): what the cell's model exerts, if that is known.
+std::string sensorFault(const GuardConfig& config, const Eigen::Vector3d& force, const Eigen::Vector3d& axis,
+                        const std::optional<Eigen::Vector3d>& predicted);
 std::string depthGuard(const GuardConfig& config, double depth);
 /// `state`: its name, for the reason; time: s in it.
 std::string timeGuard(const GuardConfig& config, const char* state, double time);

@@ -91,10 +91,27 @@ void InjectionController::engage(const Eigen::Vector3d& needle, const Eigen::Vec
     start(config_.goal);
 }
 
-std::optional<Eigen::Vector3d> InjectionController::step(const Input& input, double dt) {
+/// A force that cannot be is none. Its cause does not go away by itself: a person has to look at the sensor.
+void InjectionController::refuseForce(Input& input) {
+  const bool sensor = !config_.witness.measured;
+  sensor_fault_ =
+      isValid(input.force) && sensor ? sensorFault(config_.guards, *input.force, input.axis, input.witness) : "";
+  if (sensor_fault_.empty()) return;
+  input.force.reset();
+  const bool withdraws = homing_ || injection_ == InjectionState::kWithdraw;
+  if (state_ != OperatingState::kEnabled || withdraws) return;
+  endPulse(sensor_fault_);
+  run_.end(InjectionOutcome::kGuard, sensor_fault_);
+  hold(sensor_fault_);
+  if (setpoint_ && isValid(input.needle)) stopNeedle(input);
+}
+
+std::optional<Eigen::Vector3d> InjectionController::step(const Input& given, double dt) {
+  Input input = given;
   const bool needle_valid = isValid(input.needle);
   needle_valid_ = needle_valid_ || needle_valid;
   if (needle_valid && isValid(input.force)) guard_force_ = input.force->dot(input.axis);
+  refuseForce(input);
   if (state_ == OperatingState::kDisabled || state_ == OperatingState::kFault) {
     // Something else may have moved the needle out of the cell.
     if (needle_valid && monitor_.touched() && !isInside(*input.needle, input.axis)) resetMonitors();

@@ -148,6 +148,7 @@ class InjectionController {
   bool isInside(const Eigen::Vector3d& needle, const Eigen::Vector3d& axis) const;
   void engage(const Eigen::Vector3d& needle, const Eigen::Vector3d& axis);
   void invalidateNeedle(double dt);
+  void refuseForce(Input& input);
   void yieldToRig(const Input& input);
   bool rigIsAtFault(const Eigen::Vector3d& needle, double dt);
   void monitorManualPulse(const Input& input, double dt);
@@ -194,6 +195,7 @@ class InjectionController {
   bool homing_ = false;
   bool unhomed_ = false;  ///< by command, until the needle is home again
   bool needle_valid_ = false;
+  std::string sensor_fault_;  ///< empty: the force may be that of a cell
   std::string hold_reason_ = "DISABLED";
   std::string notice_;
 };

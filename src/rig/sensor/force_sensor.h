@@ -47,6 +47,7 @@ class ForceSensor {
   bool saturated() const { return saturated_; }
   /// True after the deflection exceeded the overload, until reset().
   bool overloaded() const { return overload_.latched(); }
+  std::string overloadText() const { return overload_.text(); }
   void reset() { overload_.reset(); }
 
  private:
