@@ -26,6 +26,9 @@ namespace microinjection {
 /// whose acceleration and microsteps must be those of the file. The reply time is measured then,
 /// and turn, gain and horizon are adapted to it.
 ///
+/// Two replies to one command (by its number) that differ are those of two devices with one address, which
+/// would both move: a fault.
+///
 /// An axis without a reference position is a fault, and no position is reported. Homing moves the
 /// axes, so it needs the user's consent (`home: true`, at the start only) or the maker's tool. A
 /// reply shows only its most important flag. If that may hide a lost reference, the axis is asked
@@ -108,6 +111,7 @@ class ZaberDriver : public SerialManipulator {
   std::string axesNote() const;
 
   // Replies (zaber_replies.cpp).
+  bool isOfTwin(const ZaberMessage& reply);
   bool isExpectedReply(const ZaberMessage& reply) const;
   void handle(const ZaberMessage& message);
   void handleReply(const ZaberMessage& reply);
@@ -152,6 +156,7 @@ class ZaberDriver : public SerialManipulator {
   ZaberParser parser_;
   std::array<Axis, 3> axes_;
   std::optional<Exchange> exchange_;
+  std::optional<ZaberMessage> answer_;  // the last expected reply, of this session
   ReplyTimes reply_times_;
   double answer_time_;    // s
   double acceleration_;   // m/s^2, of the slowest axis

@@ -243,7 +243,7 @@ std::vector<std::string> ZaberEmulator::flags(const Device& device, int axis) {
 std::string ZaberEmulator::get(int number, const Device& device, const std::string& name) const {
   if (name == "version") return "OK " + config_.firmware;
   if (name == "deviceid" || name == "device.id") return "OK 50000";
-  if (name == "system.serial") return "OK " + std::to_string(12340 + number);
+  if (name == "system.serial") return "OK " + std::to_string(config_.serial + number);
   if (name == "system.access") return "OK " + std::to_string(device.access);
   if (name == "system.axiscount") return "OK " + std::to_string(device.axes.size());
   if (name == "comm.address") return "OK " + std::to_string(number);

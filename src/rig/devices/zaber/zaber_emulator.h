@@ -23,6 +23,7 @@ struct ZaberEmulatorConfig {
   bool referenced = true;               ///< false: axes warn WR and refuse absolute moves until homed
   bool alerts = false;                  ///< setting comm.alert: an axis that comes to rest sends an alert
   bool checksum = false;                ///< setting comm.checksum: messages have one
+  int serial = 12340;                   ///< added to a device's number: its serial number
   std::vector<std::string> without;     ///< settings that its firmware does not have
   int info_every = 0;                   ///< an info line after every n-th reply; 0: only after that to `help`
 };

@@ -23,10 +23,25 @@ bool ZaberDriver::isExpectedReply(const ZaberMessage& reply) const {
   return reply.from == exchange_->to || (reply.rejected && reply.from == device);
 }
 
+/// A command is answered once. What a line that doubles bytes repeats is the same.
+bool ZaberDriver::isOfTwin(const ZaberMessage& reply) {
+  if (!answer_ || !answer_->number || reply.number != answer_->number || !(reply.from == answer_->from)) return false;
+  if (reply.rejected == answer_->rejected && reply.data == answer_->data) return false;
+  if (state() == State::kFault && !clearing()) return true;
+  const std::string device = std::to_string(reply.from.device);
+  raiseFault("one command has two answers of device " + device + ", \"" + answer_->data + "\" and \"" + reply.data +
+             "\": two devices have the address " + device + ", and both would move. Connect them one by one and give " +
+             "each an address of its own (set comm.address, or /renumber)");
+  return true;
+}
+
 void ZaberDriver::handle(const ZaberMessage& message) {
   const int axis = axisOf(message.from);
   if (message.kind == ZaberMessage::Kind::kReply) {
-    if (isExpectedReply(message)) handleReply(message);
+    if (isOfTwin(message)) return;
+    if (!isExpectedReply(message)) return;
+    answer_ = message;
+    handleReply(message);
   } else if (message.kind == ZaberMessage::Kind::kAlert && axis >= 0) {
     handleFlag(message.flag, axis);
   }

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kLongestBraking = 1.5;  // s, after a stop
 constexpr double kLongestHoming = 120;   // s
-constexpr int kSettingTries = 120;       // for 18 settings with two replies each
+constexpr int kSettingTries = 120;       // for 21 settings with two replies each
 constexpr double kAgreement = 0.1;       // relative difference allowed between an acceleration and the file's
 constexpr double kAccelUnit = kZaberSpeedUnit * 1e-4;  // device data of an acceleration of 1 microstep/s^2
 
@@ -31,6 +31,7 @@ void ZaberDriver::connected() {
 
 void ZaberDriver::begin(bool lost) {
   exchange_.reset();
+  answer_.reset();
   parser_.clear();
   reply_times_.clear();
   begun_ = activeTime();

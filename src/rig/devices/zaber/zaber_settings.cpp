@@ -5,8 +5,8 @@
 namespace microinjection {
 
 std::string ZaberSettings::command(Name name) {
-  static const std::array<std::string, kNames> names{"version", "limit.min",        "limit.max",
-                                                     "accel",   "motion.decelonly", "resolution"};
+  static const std::array<std::string, kNames> names{"version",          "limit.min",  "limit.max",    "accel",
+                                                     "motion.decelonly", "resolution", "system.serial"};
   return "get " + names[name];
 }
 

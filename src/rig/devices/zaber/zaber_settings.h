@@ -12,12 +12,13 @@ namespace microinjection {
 /// of a damaged one would last.
 class ZaberSettings {
  public:
-  enum Name { kVersion, kLowest, kHighest, kAcceleration, kDeceleration, kResolution, kNames };
+  enum Name { kVersion, kLowest, kHighest, kAcceleration, kDeceleration, kResolution, kSerial, kNames };
 
   static std::string command(Name name);
-  static bool ofDevice(Name name) { return name == kVersion; }  ///< to be requested from axis 0
+  /// To be requested from axis 0. The serial number only shows whether two devices answer.
+  static bool ofDevice(Name name) { return name == kVersion || name == kSerial; }
   /// Older firmware and direct drives do not have all of them.
-  static bool mayBeUnknown(Name name) { return name == kDeceleration || name == kResolution; }
+  static bool mayBeUnknown(Name name) { return name == kDeceleration || name == kResolution || name == kSerial; }
 
   std::optional<Name> missing() const;  ///< the next to be read; empty: all are valid
   void add(Name name, const std::string& data);
