@@ -6,6 +6,12 @@
 
 namespace microinjection {
 
+namespace {
+
+constexpr double kHere = 1e-6;  ///< m, from the needle, of a command that moves nothing
+
+}  // namespace
+
 MicromanipulatorConfig MicromanipulatorConfig::read(ConfigReader& reader) {
   MicromanipulatorConfig config;
   reader.number("pipette_tilt", config.pipette_tilt);
@@ -93,7 +99,15 @@ std::string Micromanipulator::streamRefusal() {
   return hold;
 }
 
+/// After a fault that was cleared, a stream that has waited at the needle goes on: one `enable` is enough.
+void Micromanipulator::admitIfHere(const Eigen::Isometry3d& tip_pose) {
+  if (!streams_blocked_ || !fault_cleared_ || !unavailableReason().empty()) return;
+  const auto measured = tipPose();
+  if (measured && (tip_pose.translation() - measured->translation()).norm() < kHere) streams_blocked_ = false;
+}
+
 std::string Micromanipulator::servoPosition(const Eigen::Isometry3d& tip_pose) {
+  admitIfHere(tip_pose);
   if (std::string reason = streamRefusal(); !reason.empty()) return reason;
   const Commanded commanded = checkPose(tip_pose);
   if (!commanded.refusal.empty()) return commanded.refusal;
@@ -166,10 +180,12 @@ void Micromanipulator::halt() {
 void Micromanipulator::stop() {
   halt();
   streams_blocked_ = true;
+  fault_cleared_ = false;
 }
 
 void Micromanipulator::clearFault() {
   if (device_->state() == ManipulatorDevice::State::kReady) streams_blocked_ = false;
+  fault_cleared_ = device_->state() == ManipulatorDevice::State::kFault;
   rest();
   device_->clearFault();
 }
@@ -182,6 +198,7 @@ void Micromanipulator::step(double time, double dt) {
     if (mode_ != Mode::kHold) abort_reason_ = reason;
     rest();
     move_active_ = false;
+    if (!streams_blocked_ || device_->state() == ManipulatorDevice::State::kDisconnected) fault_cleared_ = false;
     streams_blocked_ = true;
   } else {
     haltIfBlocked();

@@ -32,7 +32,9 @@ struct MicromanipulatorConfig {
 /// and servo_speed_limit is followed without lag. The device follows the set-point, or moves to its
 /// goal. A refused command changes nothing. After a stop or a fault the set-point is the measured
 /// position. A stream of commands that continues through it moves nothing until it has paused for
-/// command_timeout, or until clearFault() while the device is ready.
+/// command_timeout, or until clearFault() while the device is ready, or, once clearFault() has ended a
+/// fault, until it commands the needle to stay where it is: such a stream has seen the fault, and
+/// nothing leaps.
 class Micromanipulator {
  public:
   /// @param device  must outlive this object; its speed is limited to that of the axes
@@ -83,6 +85,7 @@ class Micromanipulator {
   void adapt();
   std::string unavailableReason() const;
   std::string streamRefusal();
+  void admitIfHere(const Eigen::Isometry3d& tip_pose);
   Commanded checkPose(const Eigen::Isometry3d& tip_pose) const;
   AxesMotion start() const;
   Eigen::Vector3d restAfter(const AxesMotion& motion) const;
@@ -117,6 +120,7 @@ class Micromanipulator {
   double velocity_command_time_ = 0;                               ///< s
   bool move_active_ = false;                                       ///< see busy()
   bool streams_blocked_ = false;                                   ///< after a stop or fault, until a pause
+  bool fault_cleared_ = false;                                     ///< by clearFault(), since streams were blocked
   double stream_pause_ = std::numeric_limits<double>::infinity();  ///< s, since the last command of a stream
   std::string abort_reason_;
   double last_dt_ = 0;  ///< s, of the last step; 0 before the first

@@ -198,6 +198,28 @@ TEST_F(MicromanipulatorTest, AStreamThatOutlivesAFaultMovesNothingBeforeItHasPau
   EXPECT_NEAR(rig_.tipPose()->translation().x(), 1e-4, 1e-9);
 }
 
+TEST_F(MicromanipulatorTest, AStreamThatWaitedAtTheNeedleGoesOnWhenTheFaultIsCleared) {
+  const auto stream = [&](double duration, double ahead) {
+    for (const double end = time_ + duration; time_ < end; run(kStep))
+      rig_.servoPosition(at(rig_.tipPose()->translation().x() + ahead, 0, 0));
+  };
+  stream(0.02, 10e-6);
+  device_.injectFault("motor is hot");
+  stream(0.2, 0);
+  EXPECT_NE(rig_.streamHold(), "");
+  const double held = rig_.tipPose()->translation().x();
+  rig_.clearFault();
+  stream(0.01, 0);
+  EXPECT_EQ(rig_.streamHold(), "");
+  EXPECT_NEAR(rig_.tipPose()->translation().x(), held, 1e-9) << "nothing leaps";
+  stream(0.3, 10e-6);
+  EXPECT_GT(rig_.tipPose()->translation().x(), held + 20e-6);
+  // Without enable, and after a stop, it does not.
+  rig_.stop();
+  stream(0.3, 0);
+  EXPECT_NE(rig_.streamHold(), "");
+}
+
 TEST_F(MicromanipulatorTest, ANewGoalIsReachedInAStraightLineAfterTheTurn) {
   ASSERT_EQ(rig_.movePosition(at(0.8e-3, 0, 0)), "");
   run(0.2);
