@@ -40,6 +40,9 @@ class FemtojetEmulator : public InjectorEmulator {
     return time_ < cleans_until_ ? config_.highest : time_ < injects_until_ ? injection_ : compensation_;
   }
 
+  /// Sets the injection pressure (Pa, gauge) as its knob does.
+  void turnInjectionPressure(double pressure) { injection_ = pressure; }
+
  protected:
   void process(const std::string& bytes, double time) override;
   void advance(double time) override { time_ = std::max(time, time_); }

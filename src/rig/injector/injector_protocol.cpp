@@ -65,6 +65,12 @@ std::string InjectorProtocol::refusal(const InjectionPulse& requested) const {
     const std::string set = other("pulse duration", requested.duration, *pulse_duration, "s");
     if (!set.empty()) return set;
   }
+  if (timed && requested.duration < stop_latency) {
+    std::ostringstream out;
+    out << "pulse duration = " << requested.duration << " s: shorter than the device's stop_latency, " << stop_latency
+        << " s";
+    return out.str();
+  }
   const InjectionPulse sent = asSent(requested);
   const std::string coarse = tooCoarse("pulse pressure", requested.pressure, sent.pressure, "Pa");
   return coarse.empty() ? tooCoarse("pulse duration", requested.duration, sent.duration, "s") : coarse;
@@ -97,6 +103,14 @@ std::string InjectorProtocol::misread(const Exchange& exchange, const std::smatc
   std::ostringstream out;
   out << "it reads back " << groups[1].str() << " instead of " << wanted;
   return out.str();
+}
+
+std::optional<double> InjectorProtocol::duration(const Exchange& exchange, const std::smatch& groups) {
+  for (const Placeholder& placeholder : durationPlaceholders()) {
+    if (placeholder.name != exchange.confirm || groups.size() < 2) continue;
+    if (const auto read = parseNumber<double>(groups[1].str())) return *read * placeholder.unit;
+  }
+  return std::nullopt;
 }
 
 std::optional<double> InjectorProtocol::queriedPressure(const std::smatch& groups) const {

@@ -18,12 +18,13 @@ namespace microinjection {
 ///
 /// A command is a list of exchanges, each a line and its reply. The next line is sent when the
 /// reply to the previous one is as expected. The last line of `pulse` triggers the pulse; the lines
-/// before it only set it up.
+/// before it only set it up. `verify` follows a pulse: if somebody has turned a knob meanwhile, what
+/// the pulse has injected is unknown.
 ///
 /// Placeholders for numbers in a line: {pressure_Pa}, {pressure_hPa}, {pressure_kPa},
 /// {pressure_psi}, and {pressure} in the device's own unit (`pressure_unit`, `pressure_zero`); in
-/// `pulse` also {duration_s} and {duration_ms}. In `pulse` they have the pulse's values, elsewhere
-/// the balance pressure. Placeholders for data that only the user has, such as the unpublished
+/// `pulse` and `verify` also {duration_s} and {duration_ms}. In these they have the pulse's values,
+/// elsewhere the balance pressure. Placeholders for data that only the user has, such as the unpublished
 /// number of a command: {NAME}, or {NAME:LENGTH}, from codes/NAME. Regular expressions (ECMAScript)
 /// must match a whole reply.
 class InjectorProtocol {
@@ -43,11 +44,13 @@ class InjectorProtocol {
   LineDialogue::Framing framing;
   Exchanges begin;            ///< sent after the line was opened; a refusal is ignored
   Exchanges pulse;            ///< the last one triggers it
+  Exchanges verify;           ///< after a pulse that the device has timed: what it was set to, read again
   Exchanges balance;          ///< empty: the balance pressure is set by hand at the device
   Exchanges stop;             ///< ends a pulse; the first line alone must do so; empty: a pulse cannot be ended
   Exchanges query;            ///< at most one; the first group of `expect`, if any, is the pressure
   double query_period = 0.2;  ///< s
   bool timed = false;         ///< a pulse lasts until `stop`, which is sent when its duration is over
+  double stop_latency = 0;    ///< s, from sending `stop` until the device obeys; it is sent so much earlier
   double pressure_unit = 1;   ///< Pa, of {pressure} and of a queried pressure
   double pressure_zero = 0;   ///< Pa, gauge, at which those are 0
   std::optional<double> pulse_pressure;  ///< Pa, gauge, if no line has a placeholder for it
@@ -67,6 +70,8 @@ class InjectorProtocol {
   /// For an exchange with `confirm`: returns an empty text, or the value that the device reads back
   /// instead of that of `values`, which are as sent.
   static std::string misread(const Exchange& exchange, const std::smatch& groups, const Values& values);
+  /// s, that an exchange with `confirm` of a duration reads back; empty for others.
+  static std::optional<double> duration(const Exchange& exchange, const std::smatch& groups);
   /// Pa; empty unless the group is a finite number.
   std::optional<double> queriedPressure(const std::smatch& groups) const;
   /// s, sum of the replies' time-outs.

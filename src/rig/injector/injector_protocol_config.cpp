@@ -115,7 +115,7 @@ LineDialogue::Framing readFraming(ConfigReader& reader) {
   LineDialogue::Framing framing;
   readLineEnding(reader, "terminator", framing.reply_end);
   framing.send_end = framing.reply_end;
-  readLineEnding(reader, "send_terminator", framing.send_end);
+  readLineEnding(reader, "send_terminator", framing.send_end, NoLineEnding::kAllowed);
   reader.boolean("echo", framing.echo);
   reader.number("quiet", framing.quiet, Range::nonNegative());
   return framing;
@@ -136,6 +136,7 @@ InjectorProtocol InjectorProtocol::read(ConfigReader& reader) {
   for (const Placeholder& placeholder : durations) all.push_back(placeholder.name);
   protocol.begin = readExchanges(reader, "begin", codes, {});
   protocol.pulse = readExchanges(reader, "pulse", codes, all, ConfigReader::kRequired);
+  protocol.verify = readExchanges(reader, "verify", codes, all);
   protocol.balance = readExchanges(reader, "balance", codes, pressure_names);
   protocol.stop = readExchanges(reader, "stop", codes, pressure_names);
   if (reader.has("query")) {
@@ -145,6 +146,9 @@ InjectorProtocol InjectorProtocol::read(ConfigReader& reader) {
   reader.number("query_period", protocol.query_period, Range::positive());
   reader.boolean("timed", protocol.timed);
   if (protocol.timed && protocol.stop.empty()) reader.error("timed", "needs stop, which ends the pulse");
+  if (protocol.timed && !protocol.verify.empty()) reader.error("verify", "must be left out where timed is true");
+  reader.number("stop_latency", protocol.stop_latency, Range::nonNegative());
+  if (reader.has("ignore")) protocol.framing.ignore = readRegex(reader, "ignore", codes);
   protocol.pulse_pressure =
       readFixed(reader, "pulse_pressure", usesPlaceholder(protocol.pulse, pressures), Range::finite());
   protocol.pulse_duration = readFixed(reader, "pulse_duration",

@@ -1,6 +1,8 @@
 #include "rig/injector/line_dialogue.h"
 
+#include <algorithm>
 #include <utility>
+#include <vector>
 
 namespace microinjection {
 namespace {
@@ -27,7 +29,16 @@ void LineDialogue::send(const std::string& line, double timeout, double time) {
 
 LineDialogue::Result LineDialogue::receive(double time) {
   const std::string bytes = wire_.read(time);
-  if (!bytes.empty()) last_received_ = time;
+  if (!bytes.empty()) last_byte_ = time;
+  const unsigned too_long = lines_.tooLong();
+  std::vector<std::string> lines = lines_.feed(bytes);
+  for (std::string& line : lines) {
+    if (framing_.reply_end == "\n" && !line.empty() && line.back() == '\r') line.pop_back();
+  }
+  lines.erase(std::remove_if(lines.begin(), lines.end(), [this](const auto& line) { return ignores(line); }),
+              lines.end());
+  const bool noise = framing_.ignore ? !lines.empty() || lines_.tooLong() > too_long : !bytes.empty();
+  if (noise) last_received_ = time;
   if (!in_step_) {
     if (!quiet(time)) return Result::kNone;
     lines_.clear(false);
@@ -35,9 +46,7 @@ LineDialogue::Result LineDialogue::receive(double time) {
     return Result::kNone;
   }
   int replies = 0;
-  const unsigned too_long = lines_.tooLong();
-  for (std::string& line : lines_.feed(bytes)) {
-    if (framing_.reply_end == "\n" && !line.empty() && line.back() == '\r') line.pop_back();
+  for (std::string& line : lines) {
     if (echoes(line)) continue;
     reply_ = std::move(line);
     ++replies;
@@ -55,6 +64,10 @@ LineDialogue::Result LineDialogue::receive(double time) {
   if (!was_waiting || time <= deadline_) return Result::kNone;
   resynchronize(time);
   return Result::kLate;
+}
+
+bool LineDialogue::ignores(const std::string& line) const {
+  return framing_.ignore && std::regex_match(line, *framing_.ignore);
 }
 
 bool LineDialogue::echoes(const std::string& line) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+#include <regex>
 #include <string>
 
 #include "rig/serial/line_splitter.h"
@@ -15,10 +17,11 @@ namespace microinjection {
 class LineDialogue {
  public:
   struct Framing {
-    std::string reply_end = "\r";  ///< of the device's lines; with a line feed, a carriage return may precede it
-    std::string send_end = "\r";   ///< of the sent lines
-    bool echo = false;             ///< the device may repeat the line, or send an empty one, before its reply
-    double quiet = 0.1;            ///< s without a byte until the line is synchronized again
+    std::string reply_end = "\r";        ///< of the device's lines; with a line feed, a carriage return may precede it
+    std::string send_end = "\r";         ///< of the sent lines
+    bool echo = false;                   ///< the device may repeat the line, or send an empty one, before its reply
+    double quiet = 0.1;                  ///< s without a byte until the line is synchronized again
+    std::optional<std::regex> ignore{};  ///< lines that the device sends by itself; they are neither reply nor noise
   };
   enum class Result { kNone, kReply, kLate, kUnclear };
 
@@ -30,7 +33,9 @@ class LineDialogue {
   bool free() const { return in_step_ && !waiting_; }
   bool waiting() const { return waiting_; }
   /// No byte was received for a while, so no unexpected reply is on its way.
-  bool quiet(double time) const { return time - last_received_ >= framing_.quiet; }
+  bool quiet(double time) const {
+    return time - last_received_ >= framing_.quiet && (!lines_.inMidLine() || time - last_byte_ >= framing_.quiet);
+  }
 
   /// @pre free()
   void send(const std::string& line, double timeout, double time);
@@ -43,15 +48,18 @@ class LineDialogue {
 
  private:
   bool echoes(const std::string& line);
+  bool ignores(const std::string& line) const;
 
   Wire& wire_;
   Framing framing_;
   LineSplitter lines_;
   std::string sent_, reply_;
   bool waiting_ = false, echoed_ = false;
-  double deadline_ = 0;          ///< s, for the reply
-  bool in_step_ = false;         ///< no late reply can arrive
-  double last_received_ = -1e9;  ///< s, when the last byte came or resynchronization began
+  double deadline_ = 0;   ///< s, for the reply
+  bool in_step_ = false;  ///< no late reply can arrive
+  double last_received_ =
+      -1e9;                  ///< s, when the last byte came that is not of an ignored line, or resynchronization began
+  double last_byte_ = -1e9;  ///< s, of any line
   unsigned bad_ = 0;
 };
 

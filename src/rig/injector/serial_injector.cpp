@@ -1,5 +1,6 @@
 #include "rig/injector/serial_injector.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace microinjection {
@@ -36,6 +37,8 @@ const InjectorProtocol::Exchanges& SerialInjector::exchanges(Task task) const {
       return protocol_.begin;
     case Task::kPulse:
       return protocol_.pulse;
+    case Task::kVerify:
+      return protocol_.verify;
     case Task::kBalance:
       return protocol_.balance;
     case Task::kStop:
@@ -72,7 +75,7 @@ bool SerialInjector::mayFlow() const {
 
 std::string SerialInjector::pulse(const InjectionPulse& pulse) {
   if (!fault().empty()) return fault();
-  if (waiting_pulse_ || sent_pulse_ || model_.reading().busy) return "a pulse is under way";
+  if (waiting_pulse_ || sent_pulse_ || unverified_ || model_.reading().busy) return "a pulse is under way";
   std::string out_of_limits = limits_.check(pulse);
   if (!out_of_limits.empty()) return out_of_limits;
   // Checks the rounded values: 0.4 ms is no pulse if the line has whole milliseconds.
@@ -114,7 +117,17 @@ void SerialInjector::reset() {
   tries_ = 0;
   if (!balance_confirmed_ && !waiting_balance_ && !protocol_.balance.empty()) waiting_balance_ = sent_balance_;
   model_.reset();
+  volume_ = 0;
+  if (unverified_) unverified_->volume = 0;
   report();
+}
+
+/// A pulse counts when the model has finished it and the device has confirmed its settings.
+void SerialInjector::stepModel(double time) {
+  const bool unknown = !wire_->isOpen() || !error_text_.empty() || !unconfirmedReason().empty();
+  const double before = model_.reading().volume;
+  model_.step(time);
+  if (!unknown) volume_ += model_.reading().volume - before;
 }
 
 void SerialInjector::step(double time) {
@@ -123,7 +136,7 @@ void SerialInjector::step(double time) {
   if (unconfirmed && time >= unconfirmed_until_) pressureChanges();  // such a pulse is over now
   checkGuard(time);  // before the model continues a pulse that the guard has ended
   const bool flowed = model_.reading().busy;
-  model_.step(time);
+  stepModel(time);
   if (flowed && !model_.reading().busy) pressureChanges();  // ended by the device's own timer
   if (keepOpen(time)) {
     receive(time);
@@ -137,6 +150,7 @@ bool SerialInjector::keepOpen(double time) {
   if (wire_->isOpen()) return true;
   const bool flows = protocol_.timed && model_.reading().busy;
   if (task_ != Task::kNone) abort("the line broke");
+  giveUpVerification("the line broke");
   if (flows && stopped_) fail("the line broke during a pulse, which may go on");
   if (waiting_pulse_) fail("the line broke");
   stopped_ = balance_confirmed_ = false;
@@ -162,6 +176,7 @@ void SerialInjector::checkGuard(double time) {
   if (guard.intervention.empty()) return;
   const bool flows = mayFlow();
   if (model_.reading().busy) fail("the pulse was broken off: " + guard.intervention);
+  if (model_.reading().busy) unverified_.reset();
   model_.stop();
   pressureChanges();
   if (task_ != Task::kNone) abort(guard.intervention);
@@ -213,6 +228,9 @@ void SerialInjector::handleReply(const std::string& reply) {
     }
   }
   if (!wrong.empty()) {
+    if (const auto lasts = InjectorProtocol::duration(exchange, groups); lasts && task_ == Task::kVerify) {
+      unverified_->longest = std::max(unverified_->longest, ends_ - unverified_->pulse.duration + *lasts);
+    }
     dialogue_.resynchronize(time_);
     return abort(wrong);
   }
@@ -225,13 +243,19 @@ void SerialInjector::complete() {
   if (done == Task::kPulse) {
     const InjectionPulse pulse = protocol_.asSent(*sent_pulse_);
     protocol_.timed ? model_.open(pulse) : static_cast<void>(model_.pulse(pulse));
-    ends_ = time_ + pulse.duration;
+    ends_ = time_ + pulse.duration - protocol_.stop_latency;
+    if (!protocol_.verify.empty()) unverified_ = Unverified{pulse, volume_, time_ + pulse.duration};
     sent_pulse_.reset();
+  } else if (done == Task::kVerify) {
+    ++done_;
+    last_id_ = unverified_->pulse.id;
+    unverified_.reset();
   } else if (done == Task::kBalance) {
     model_.setBalance(sent_balance_);
     balance_confirmed_ = true;
   } else if (done == Task::kStop) {
     stopped_ = true;
+    if (model_.reading().busy) unverified_.reset();
     unconfirmed_until_ = time_;
     const bool late = over_ && tries_ > 0;
     over_ && !late ? model_.finish() : static_cast<void>(model_.stop());
@@ -262,7 +286,14 @@ void SerialInjector::updatePressure(double queried) {
 
 void SerialInjector::report() {
   reading_ = model_.reading();
-  reading_.busy = reading_.busy || waiting_pulse_ || sent_pulse_ || stopping();
+  if (std::exchange(seen_, reading_.pulses) != reading_.pulses) {
+    waiting_verify_ = unverified_.has_value();
+    if (!waiting_verify_ && reading_.last_id != given_up_) ++done_, last_id_ = reading_.last_id;
+  }
+  reading_.pulses = done_;
+  reading_.last_id = last_id_;
+  reading_.volume = volume_;
+  reading_.busy = reading_.busy || waiting_pulse_ || sent_pulse_ || unverified_ || stopping();
   if (pressure_) reading_.pressure = *pressure_;
 }
 

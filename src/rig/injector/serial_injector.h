@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -28,8 +29,12 @@ namespace microinjection {
 /// accepts it, also after the line was opened. Until then there is no pulse, since an output may be
 /// on.
 ///
+/// A pulse with lines to verify it counts as completed when they confirm, after its end, that the
+/// device was set as before. Otherwise it is a fault, and what it has injected is unknown.
+///
 /// Flow and volume are estimates from the model of the pipette and the device's rise time. So is
-/// the pressure until it has been queried after its last change.
+/// the pressure until it has been queried after its last change. While the device does not answer,
+/// the pressure is unknown and the volume does not grow; it leaves out pulses whose dose is unknown.
 class SerialInjector : public InjectorDevice {
  public:
   /// `model`: pipette, limits and the device's rise time; its balance pressure is sent at the
@@ -48,13 +53,15 @@ class SerialInjector : public InjectorDevice {
   unsigned badReplies() const { return bad_replies_ + dialogue_.badLines(); }
 
  private:
-  enum class Task { kNone, kBegin, kPulse, kBalance, kStop, kQuery };
+  enum class Task { kNone, kBegin, kPulse, kVerify, kBalance, kStop, kQuery };
   enum class Refusal { kNo, kYes };
 
   const InjectorProtocol::Exchanges& exchanges(Task task) const;
   bool triggered() const;
   std::string unconfirmedReason() const;
   bool mayFlow() const;
+  void stepModel(double time);
+  void giveUpVerification(const std::string& reason);
   bool stopping() const { return waiting_stop_ || task_ == Task::kStop; }
   void checkGuard(double time);
   bool keepOpen(double time);
@@ -89,6 +96,13 @@ class SerialInjector : public InjectorDevice {
   std::optional<InjectionPulse> waiting_pulse_;
   double pulse_wait_start_ = 0;               ///< s
   std::optional<InjectionPulse> sent_pulse_;  ///< set up or triggered, and not accepted yet
+  struct Unverified {
+    InjectionPulse pulse;
+    double volume;   ///< m^3, reported at its start
+    double longest;  ///< s, when it is over at the latest, by what was read back
+  };
+  std::optional<Unverified> unverified_;  ///< the accepted pulse, until it is verified
+  bool waiting_verify_ = false;
   bool waiting_stop_ = false;
   bool over_ = false;                      ///< the stop ends a timed pulse whose duration is over
   bool stopped_ = false;                   ///< the device has accepted a stop since the line was opened
@@ -104,6 +118,10 @@ class SerialInjector : public InjectorDevice {
   double changed_ = -1e9;                  ///< s, of the last pressure change by a pulse, its end or a new balance
   std::optional<double> pressure_;         ///< Pa, as queried since then
   unsigned bad_replies_ = 0;
+  double volume_ = 0;                                    ///< m^3, while the pressure was known
+  unsigned seen_ = 0, done_ = 0;                         ///< pulses of the model, and those that count
+  std::uint64_t last_id_ = 0;                            ///< of the last that counts
+  std::uint64_t given_up_ = 0;                           ///< of the last that could not be verified
   std::string fault_;                                    ///< until reset()
   std::string error_text_ = "the line is not open yet";  ///< of the line or a query; empty: none
   std::string unguarded_;                                ///< why there is no stop guard; empty: there is one

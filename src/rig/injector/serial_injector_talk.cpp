@@ -21,12 +21,23 @@ void SerialInjector::giveUpPulse(const std::string& reason, bool was_triggered, 
     stopped_ = false;  // if this driver times the pulses, a stop does no harm, whatever the reply was
   }
   if (was_triggered && refusal == Refusal::kNo) {
-    what += "; it may have been done, and is not sent again";
+    what += "; it may have been done, and is not sent again; the volume leaves it out";
     unconfirmed_until_ = last_sent_ + protocol_.asSent(*sent_pulse_).duration + protocol_.framing.quiet;
     pressureChanges();
   }
   sent_pulse_.reset();
   fail(what);
+}
+
+void SerialInjector::giveUpVerification(const std::string& reason) {
+  if (!unverified_) return;
+  volume_ = unverified_->volume;
+  const std::string what = "pulse " + std::to_string(unverified_->pulse.id) + ": " + reason;
+  given_up_ = unverified_->pulse.id;
+  unconfirmed_until_ = std::max(unconfirmed_until_, unverified_->longest);
+  unverified_.reset();
+  waiting_verify_ = false;
+  fail(what + "; what it has injected is unknown, and the volume leaves it out");
 }
 
 void SerialInjector::abort(const std::string& reason, Refusal refusal) {
@@ -38,6 +49,11 @@ void SerialInjector::abort(const std::string& reason, Refusal refusal) {
   const Task given_up = std::exchange(task_, Task::kNone);
   if (given_up == Task::kPulse) {
     giveUpPulse(reason, was_triggered, refusal);
+  } else if (given_up == Task::kVerify) {
+    waiting_verify_ = !last && unverified_;
+    if (!last) return;
+    tries_ = 0;
+    giveUpVerification("afterwards " + reason);
   } else if (given_up == Task::kBegin) {
     waiting_begin_ = !last;
     if (last) tries_ = 0;  // a device without this command is stopped all the same
@@ -83,6 +99,7 @@ void SerialInjector::putBack() {
     balance_confirmed_ = false;  // the device may have received it
     if (!waiting_balance_) waiting_balance_ = sent_balance_;
   }
+  if (task_ == Task::kVerify) waiting_verify_ = unverified_.has_value();
   sent_pulse_.reset();
   task_ = Task::kNone;
 }
@@ -90,8 +107,9 @@ void SerialInjector::putBack() {
 bool SerialInjector::begin(Task task) {
   task_ = task;
   step_ = 0;
-  values_ = task == Task::kPulse ? protocol_.pulseValues(protocol_.asSent(*sent_pulse_))
-                                 : protocol_.balanceValues(sent_balance_);
+  values_ = task == Task::kPulse    ? protocol_.pulseValues(protocol_.asSent(*sent_pulse_))
+            : task == Task::kVerify ? protocol_.pulseValues(unverified_->pulse)
+                                    : protocol_.balanceValues(sent_balance_);
   return true;
 }
 
@@ -102,6 +120,7 @@ bool SerialInjector::next(double time) {
   if (std::exchange(waiting_begin_, false)) return begin(Task::kBegin);  // the line has been quiet since it was opened
   if (std::exchange(waiting_stop_, false)) return begin(Task::kStop);
   if (holds || !dialogue_.quiet(time)) return false;
+  if (std::exchange(waiting_verify_, false) && unverified_) return begin(Task::kVerify);
   if (waiting_balance_) {  // precedes the pulse, which returns to it
     sent_balance_ = protocol_.balanceAsSent(*std::exchange(waiting_balance_, std::nullopt));
     return begin(Task::kBalance);

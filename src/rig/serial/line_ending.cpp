@@ -24,18 +24,21 @@ std::string controlCharacter(const std::string& text) {
 
 }  // namespace
 
-void readLineEnding(ConfigReader& reader, const std::string& key, std::string& bytes) {
+void readLineEnding(ConfigReader& reader, const std::string& key, std::string& bytes, NoLineEnding none) {
   static const std::map<std::string, std::string> endings{{"CR", "\r"}, {"LF", "\n"}, {"CRLF", "\r\n"}};
   std::string name;
   reader.text(key, name);
   if (name.empty() && !reader.has(key)) return;
+  const bool may_be_none = none == NoLineEnding::kAllowed;
+  if (may_be_none && name == "NONE") return bytes.clear();
   const auto found = endings.find(name);
   if (found != endings.end()) {
     bytes = found->second;
     return;
   }
   const std::string control = controlCharacter(name);
-  reader.error(key, "must be one of the names CR, LF, CRLF" + (control.empty() ? "" : ", and has " + control));
+  reader.error(key, "must be one of the names CR, LF, CRLF" + std::string(may_be_none ? ", NONE" : "") +
+                        (control.empty() ? "" : ", and has " + control));
 }
 
 void readPlainText(ConfigReader& reader, const std::string& key, std::string& text, ConfigReader::Presence presence) {

@@ -20,7 +20,8 @@ class LineSplitter {
   /// been opened while the device was sending.
   void clear(bool in_mid_line);
 
-  unsigned tooLong() const { return too_long_; }  ///< lines dropped because of their length
+  bool inMidLine() const { return !begun_.empty(); }  ///< the beginning of a line has come
+  unsigned tooLong() const { return too_long_; }      ///< lines dropped because of their length
 
  private:
   std::string terminator_;

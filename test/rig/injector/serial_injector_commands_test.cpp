@@ -149,7 +149,8 @@ TEST_F(DialogueTest, TwoRepliesAreNone) {
   answers["G"] = "OK\r\nERR 9";
   injector.pulse({5, 12300, 0.25});
   run(1);
-  EXPECT_EQ(injector.fault(), "pulse 5: more than one reply; it may have been done, and is not sent again");
+  EXPECT_EQ(injector.fault(),
+            "pulse 5: more than one reply; it may have been done, and is not sent again; the volume leaves it out");
   EXPECT_EQ(injector.reading().pulses, 0U);
 }
 
