@@ -116,6 +116,7 @@ void CameraNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   bus_.refusals().report(status);
   status.add("rate (Hz)", (state.frames - reported_frames_) / std::max(1e-9, secondsBetween(reported_, now)));
   status.add("frames", state.frames);
+  if (!state.has.empty()) status.add("the camera has", state.has);
   status.add("repeated frames, dropped", state.repeated);
   status.add("times opened", state.opened);
   status.add("age of the last frame (s)", age);

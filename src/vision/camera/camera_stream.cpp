@@ -70,6 +70,7 @@ std::optional<CameraFrame> CameraStream::next() {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (frame) {
     if (is_device_) state_.report.clear();  // it has recovered
+    state_.has = source_->settings();
     ++state_.frames;
   } else {
     state_.ended = true;

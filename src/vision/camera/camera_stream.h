@@ -18,6 +18,7 @@ struct CameraStreamState {
   unsigned opened = 0;    ///< times that the source was opened
   bool ended = false;     ///< of a recording
   std::string report;     ///< the last one; empty: none
+  std::string has;        ///< of a device: the settings that it says it has
   std::string settings;   ///< of a device: what is not as asked for, since it was opened; empty: nothing
 };
 

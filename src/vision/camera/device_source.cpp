@@ -15,6 +15,8 @@ namespace {
 constexpr double kAutomaticOff = 1;         // of V4L2's exposure_auto: manual
 constexpr double kSettingTolerance = 0.01;  // of the value: devices round to their own steps
 
+constexpr long kReadBackPeriod = 100;  // frames
+
 constexpr char kInPipeline[] = "is a pipeline: its size, format, rate, exposure and gain belong in its text";
 
 const std::vector<std::string> kDeepFormats = {"Y16 ", "Y12 ", "Y10 "};
@@ -127,15 +129,38 @@ void DeviceSource::configure() {
     set(cv::CAP_PROP_EXPOSURE, "exposure", *config_.exposure, "");
   }
   if (config_.gain) set(cv::CAP_PROP_GAIN, "gain", *config_.gain, "");
+  readBack();
 }
 
 void DeviceSource::set(int property, const std::string& key, double value, const std::string& unit) {
   capture_->set(property, value);
-  const double found = capture_->get(property);
-  if (std::abs(found - value) <= kSettingTolerance * std::abs(value)) return;
-  std::ostringstream text;
-  text << key << " = " << value << unit << ": the device has " << found << unit;
-  report(text.str());
+  asked_.push_back({property, key, unit, value, value});
+}
+
+/// Reports each setting once for each value that it has in the place of what was asked.
+void DeviceSource::readBack() {
+  std::ostringstream has;
+  if (!size_.empty()) has << size_.width << " x " << size_.height << " px";
+  for (Setting& setting : asked_) {
+    const double found = capture_->get(setting.property);
+    has << (has.tellp() > 0 ? ", " : "") << setting.key << ' ' << found << setting.unit;
+    const bool same = std::abs(found - setting.asked) <= kSettingTolerance * std::abs(setting.asked);
+    if (!same && found != setting.has) {
+      std::ostringstream text;
+      text << setting.key << " = " << setting.asked << setting.unit << ": the device has " << found << setting.unit;
+      report(text.str());
+    }
+    setting.has = found;
+  }
+  settings_ = has.str();
+}
+
+void DeviceSource::checkSize(const cv::Size& size) {
+  const bool is_new = size != size_;
+  size_ = size;
+  if (!is_new || config_.width == 0 || size == cv::Size(config_.width, config_.height)) return;
+  report("width, height = " + std::to_string(config_.width) + ", " + std::to_string(config_.height) +
+         " px: the frames have " + std::to_string(size.width) + " x " + std::to_string(size.height) + " px");
 }
 
 std::optional<CameraFrame> DeviceSource::next() {
@@ -153,6 +178,8 @@ std::optional<CameraFrame> DeviceSource::next() {
     report("format: the device has 16 bit, of which OpenCV leaves 8");
     is_deep_ = false;  // one report is enough
   }
+  checkSize(image.size());
+  if (count_ % kReadBackPeriod == 0) readBack();
   const double milliseconds = capture_->get(cv::CAP_PROP_POS_MSEC);
   std::optional<double> stamp;
   if (std::isfinite(milliseconds) && milliseconds > 0) stamp = milliseconds * 1e-3;

@@ -4,6 +4,7 @@
 #include <opencv2/videoio.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/config_reader.h"
 #include "vision/camera/frame_source.h"
@@ -25,8 +26,9 @@ struct DeviceSourceConfig {
   bool changesSettings() const;  ///< whether any setting of the device is given
 };
 
-/// Frames of a camera. A GStreamer pipeline ends in an appsink. Its settings belong in its text:
-/// OpenCV would stop the pipeline to change them.
+/// Frames of a camera. What was asked of it is read back when it is opened, with its first frame, which is when some
+/// drivers settle it, and now and then later: somebody may turn a knob. A GStreamer pipeline ends in an appsink. Its
+/// settings belong in its text: OpenCV would stop the pipeline to change them.
 class DeviceSource : public FrameSource {
  public:
   /// Throws ConfigError when the device cannot be opened. Reports every setting that the device
@@ -38,13 +40,24 @@ class DeviceSource : public FrameSource {
   /// Waits for the device's next frame. The stamp is the driver's, if it has one.
   std::optional<CameraFrame> next() override;
   double period() const override { return 0; }
+  std::string settings() const override { return settings_; }
 
  private:
   void configure();
+  struct Setting {
+    int property;
+    std::string key, unit;
+    double asked, has;  ///< when it was last read
+  };
   void set(int property, const std::string& key, double value, const std::string& unit);
+  void readBack();
+  void checkSize(const cv::Size& size);
 
   DeviceSourceConfig config_;
   std::unique_ptr<cv::VideoCapture> capture_;
+  std::vector<Setting> asked_;
+  std::string settings_;
+  cv::Size size_;         ///< px, of the last frame
   bool is_deep_ = false;  ///< its format has more than 8 bit
   long count_ = 0;
 };

@@ -27,6 +27,9 @@ class FrameSource {
   /// s from one frame of a recording to the next; 0 for a device, which sets its own pace.
   virtual double period() const = 0;
 
+  /// The settings that a device says it has: "1280 x 960 px, exposure 100, gain 0"; empty of a recording.
+  virtual std::string settings() const { return ""; }
+
   /// Takes what was skipped or refused since the last call, a sentence each.
   std::vector<std::string> takeReports() { return std::exchange(reports_, {}); }
 

@@ -86,6 +86,46 @@ TEST(DeviceSource, ReportsWhatTheDeviceRefused) {
                                                "width = 320 px: the device has 64 px", "gain = 20: the device has 5"}));
 }
 
+/// A camera that takes all at once and makes of it what it can with its first frame, and whose knob is turned later.
+class LateDevice : public FakeDevice {
+ public:
+  bool set(int property, double value) override {
+    values[property] = value;
+    return true;
+  }
+  double get(int property) const override {
+    if (property == cv::CAP_PROP_GAIN && frames > 100) return 7;
+    if (property == cv::CAP_PROP_EXPOSURE && frames > 0) return 80;
+    return FakeDevice::get(property);
+  }
+  bool read(cv::OutputArray image) override {
+    buffer.setTo(++frames % 256);
+    image.assign(buffer);
+    return true;
+  }
+};
+
+TEST(DeviceSource, ReadsBackWhatTheDeviceHasMadeOfItsSettings) {
+  DeviceSourceConfig config;
+  config.width = 640;
+  config.height = 480;
+  config.exposure = 100;
+  config.gain = 3;
+  DeviceSource source(config, std::make_unique<LateDevice>());
+  EXPECT_TRUE(source.takeReports().empty()) << "it says that it has all";
+  ASSERT_TRUE(source.next());
+  EXPECT_EQ(source.takeReports(), (std::vector<std::string>{"width, height = 640, 480 px: the frames have 64 x 48 px",
+                                                            "exposure = 100: the device has 80"}));
+  EXPECT_NE(source.settings().find("64 x 48 px"), std::string::npos) << source.settings();
+  EXPECT_NE(source.settings().find("exposure 80, gain 3"), std::string::npos) << source.settings();
+  std::vector<std::string> later;
+  for (int i = 0; i < 500; ++i) {
+    ASSERT_TRUE(source.next());
+    for (const std::string& report : source.takeReports()) later.push_back(report);
+  }
+  EXPECT_EQ(later, std::vector<std::string>{"gain = 3: the device has 7"}) << "once";
+}
+
 TEST(DeviceSource, SixteenBitStaySixteenOrItIsReported) {
   for (const bool converts : {true, false}) {
     auto device = std::make_unique<FakeDevice>();
