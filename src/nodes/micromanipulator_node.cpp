@@ -38,19 +38,20 @@ MicromanipulatorNode::MicromanipulatorNode(Bus& bus) : MicromanipulatorNode(bus,
 MicromanipulatorNode::MicromanipulatorNode(Bus& bus, ConfigReader reader)
     : parameters_(Parameters::read(reader)),
       geometry_(ManipulatorGeometry::fromUrdf(urdfFromParameter(bus), parameters_.model.pipette_tilt)),
-      rig_(makeRigDevice(parameters_.rig, parameters_.emulated, geometry_, reader.section("device"),
+      cycle_(bus, parameters_.rate),
+      rig_(makeRigDevice(parameters_.rig, parameters_.emulated, geometry_, cycle_, reader.section("device"),
                          reader.section("emulator"))),
       model_(geometry_, CollisionGuard(urdfFromParameter(bus), geometry_, parameters_.model.collision_margin),
              parameters_.model, *rig_.device),
-      cycle_(bus, parameters_.rate),
       commands_(cycle_, parameters_.model, rig_, model_, parameters_.allow_network),
       publisher_(cycle_, geometry_, rig_, model_, parameters_.joint_states_rate),
       loop_state_(bus, "needle/loop_state") {
-  if (cycle_.bus().isVirtual() && !rig_.inject) {
+  if (cycle_.bus().isVirtual() && rig_.moves_in_real_time) {
     throw ConfigError("rig = " + parameters_.rig +
                       ": a real rig cannot run in virtual time, it moves on while time stands");
   }
   cycle_.diagnostics().add("commands", [this](auto& status) { commands_.report(status); });
+  if (rig_.report) cycle_.diagnostics().add("rig", rig_.report);
   cycle_.onStep([this](const Cycle::Tick& tick) { step(tick); });
 }
 

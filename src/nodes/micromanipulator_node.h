@@ -10,10 +10,10 @@
 
 namespace microinjection {
 
-/// A micromanipulator, simulated, emulated or real, with the same topics and CRTK's operating
-/// states. A refused command does not move the needle. Log and diagnostics report the reason, and
-/// each move that another command ends. When a second node commands the needle beside the first,
-/// the state is FAULT until `enable` (rig/manipulator/command_authority.h).
+/// A micromanipulator, simulated, emulated, real or of another node (needle/external_rig.h), with the same topics and
+/// CRTK's operating states. A refused command does not move the needle. Log and diagnostics report the reason, and each
+/// move that another command ends. When a second node commands the needle beside the first, the state is FAULT until
+/// `enable` (rig/manipulator/command_authority.h).
 ///
 /// In:  /needle/servo_cp (PoseStamped), /needle/servo_cv (TwistStamped), /needle/move_cp
 ///      (PoseStamped), in `world`. Old ones are refused. Without a stamp the time of arrival
@@ -59,9 +59,9 @@ class MicromanipulatorNode {
 
   Parameters parameters_;
   ManipulatorGeometry geometry_;
+  Cycle cycle_;
   RigDevice rig_;
   Micromanipulator model_;
-  Cycle cycle_;
   NeedleCommands commands_;
   NeedlePublisher publisher_;
   LoopStatePublisher loop_state_;

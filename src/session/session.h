@@ -25,14 +25,16 @@ struct Session {
   static constexpr int kVersion = 1;  ///< of the files
 
   struct Rig {
-    std::string name = "sim";   ///< sim, a name of config/rigs, or emulated_NAME
-    std::string port = "auto";  ///< auto: that of config, or the emulator's
-    std::string config;         ///< path of the device's parameters
-    std::string urdf;           ///< path
+    std::string name = "sim";         ///< sim, a name of config/rigs, or emulated_NAME
+    std::string port = "auto";        ///< auto: that of config, or the emulator's
+    std::string name_space = "auto";  ///< of external: of its node's topics; auto: that of config
+    std::string config;               ///< path of the device's parameters
+    std::string urdf;                 ///< path
     bool allow_network = true;
 
     bool simulated() const { return name == "sim"; }
     bool emulated() const { return name.rfind("emulated_", 0) == 0; }
+    bool external() const { return name == "external"; }
     bool real() const { return !simulated() && !emulated(); }
     std::string device() const { return emulated() ? name.substr(9) : name; }  ///< sim, or a name of config/rigs
   };

@@ -8,6 +8,8 @@ namespace {
 
 using Names = std::vector<std::string>;
 
+constexpr char kExternal[] = "external";  // a rig of config/rigs
+
 /// The first names, the devices, and the emulated ones.
 Names withEmulated(Names first, const Names& devices, const Names& last) {
   first.insert(first.end(), devices.begin(), devices.end());
@@ -30,11 +32,12 @@ SessionChoices::SessionChoices(const std::string& package)
       schemes{"none", "wave"},
       cameras{"none", "sim", "device", "folder", "video", "topic"} {
   Names devices = namesIn(package, "config/rigs");
-  // imperfect is a configuration of the simulated rig.
-  devices.erase(std::remove_if(devices.begin(), devices.end(),
-                               [](const std::string& name) { return name == "sim" || name == "imperfect"; }),
-                devices.end());
-  rigs = withEmulated({"sim"}, devices, {});
+  // imperfect is a configuration of the simulated rig, and a user's own node has no emulator here.
+  const auto is_other = [](const std::string& name) {
+    return name == "sim" || name == "imperfect" || name == kExternal;
+  };
+  devices.erase(std::remove_if(devices.begin(), devices.end(), is_other), devices.end());
+  rigs = withEmulated({"sim"}, devices, {kExternal});
   injectors = withEmulated({"auto", "simulated"}, namesIn(package, "config/injectors"), {"serial", "none"});
   hands = withFirst({"operator", "none"}, namesIn(package, "config/haptic"));
   consoles = withFirst({"none"}, namesIn(package, "config/console"));

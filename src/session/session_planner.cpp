@@ -92,7 +92,8 @@ class Planner {
     setText(node, "rig", rig.device());
     setFlag(node, "allow_network", rig.allow_network);
     setFlag(node, "emulated", rig.emulated() && !is_process);
-    if (rig.real() && rig.port != "auto") setText(node, "device/port/path", rig.port);
+    if (rig.real() && !rig.external() && rig.port != "auto") setText(node, "device/port/path", rig.port);
+    if (rig.external() && rig.name_space != "auto") setText(node, "device/namespace", rig.name_space);
     if (rig.emulated()) setText(node, "device/port/path", terminal);
     if (is_process) {
       ForeignProcess emulator;

@@ -18,8 +18,9 @@ void readRig(LayerSection section, SessionDraft& draft, const SessionChoices& ch
   Session::Rig& rig = draft.session.rig;
   const std::string before = rig.device();
   section.choice("name", rig.name, choices.rigs);
-  if (rig.device() != before) rig.port = rig.config = kAuto;  // those of another device
+  if (rig.device() != before) rig.port = rig.name_space = rig.config = kAuto;  // those of another device
   section.path("port", rig.port, kAutomatic);
+  section.text("namespace", rig.name_space);
   section.fileOrName("config", rig.config, kRigs, kAutomatic);
   section.existingFile("urdf", rig.urdf, kAutomatic);
   section.flag("allow_network", draft.allow_network);

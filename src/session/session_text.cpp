@@ -57,6 +57,7 @@ std::string Session::text() const {
   keys.raw("rig", "\n" + Group(2)
                              .text("name", rig.name)
                              .text("port", rig.port)
+                             .text("namespace", rig.name_space)
                              .text("config", rig.config)
                              .text("urdf", rig.urdf)
                              .flag("allow_network", rig.allow_network)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The needle of a session with an emulated rig gets where it is sent, by the clock on the wall, however long that takes."""
+"""The needle of a session with an emulated rig, or a node of one's own, gets where it is sent, by the clock on the wall, however long that takes."""
 
 import unittest
 
@@ -44,10 +44,12 @@ class RigLiveTest(unittest.TestCase):
         return topic in self.seen and self.seen[topic].state == state
 
     def recover(self):
-        """From a fault that the machine caused, which it does seldom."""
-        if self.says("/needle/operating_state", "FAULT"):
+        """From a fault that the machine caused, which it does seldom, or the DISABLED in which a rig starts."""
+        fault = self.says("/needle/operating_state", "FAULT")
+        if fault:
             type(self).recoveries += 1
             self.assertLessEqual(self.recoveries, 5, "the rig falls back to FAULT")
+        if fault or self.says("/needle/operating_state", "DISABLED"):
             self.enable.publish(StringStamped(string="enable"))
 
     def send(self, goal):

@@ -68,6 +68,12 @@ TEST_F(SessionPlanTest, AnEmulatedRigIsAProcessOrInside) {
   EXPECT_EQ(at(plan({"rig.name:=zaber", "rig.port:=/dev/ttyUSB0"}), "micromanipulator", "device/port/path"),
             "/dev/ttyUSB0");
   EXPECT_EQ(at(plan({"rig.name:=zaber"}), "micromanipulator", "device/port/path"), "/tmp/emulated_zaber");
+  const SessionPlan own = plan({"rig.name:=external", "rig.namespace:=/my_rig", "rig.port:=/dev/ttyUSB0"});
+  EXPECT_EQ(at(own, "micromanipulator", "rig"), "external");
+  EXPECT_EQ(at(own, "micromanipulator", "device/namespace"), "/my_rig");
+  EXPECT_EQ(at(own, "micromanipulator", "device/port/path"), "-") << "it has no port";
+  EXPECT_EQ(at(own, "cell_simulator", "needle"), "measured");
+  EXPECT_EQ(at(plan({"rig.name:=external"}), "micromanipulator", "device/rate"), "100");
   // An emulated rig never moves the real one.
   const SessionPlan dry = plan({"rig.name:=emulated_zaber", "rig.port:=/dev/ttyUSB0"});
   EXPECT_EQ(at(dry, "micromanipulator", "device/port/path"), dry.processes.front().arguments[2]);

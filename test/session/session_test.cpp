@@ -266,6 +266,9 @@ TEST_F(SessionTest, WhatBelongsToADeviceGoesWithIt) {
   EXPECT_EQ(emulated.rig.config, kPackage + "/config/rigs/imperfect.yaml") << "of the same device";
   const Session other = Session::load(lab, {"rig.name:=sim", "hand.device:=joy"}, kPackage);
   EXPECT_EQ(other.rig.port, "auto");
+  const std::string own = file("own.yaml", "version: 1\nrig: {name: external, namespace: /my_rig}\n");
+  EXPECT_EQ(Session::load(own, {}, kPackage).rig.name_space, "/my_rig");
+  EXPECT_EQ(Session::load(own, {"rig.name:=zaber"}, kPackage).rig.name_space, "auto");
   EXPECT_EQ(other.rig.config, kPackage + "/config/rigs/sim.yaml");
   EXPECT_EQ(other.hand.config, kPackage + "/config/haptic/joy.yaml");
   EXPECT_EQ(other.hand.topics.name_space, "auto");

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "base/errors.h"
+#include "nodes/needle/external_rig.h"
 #include "rig/devices/rig_registry.h"
 #include "rig/manipulator/simulated_manipulator.h"
 #include "rig/serial/emulated_wire.h"
@@ -25,6 +26,17 @@ RigDevice makeSimulated(const ManipulatorGeometry& geometry, ConfigReader& reade
       throw ConfigError("fault " + text + ": the simulated rig has error:CODE only");
     simulated->injectFault("error " + fault.code + ", injected on request");
   };
+  return rig;
+}
+
+RigDevice makeExternal(const ManipulatorGeometry& geometry, Cycle& cycle, ConfigReader& reader) {
+  const auto config = ExternalRigConfig::read(reader);
+  reader.finish();
+  auto device = std::make_unique<ExternalRig>(cycle, geometry, config);
+  ExternalRig* external = device.get();
+  RigDevice rig;
+  rig.device = std::move(device);
+  rig.report = [external](diagnostic_updater::DiagnosticStatusWrapper& status) { external->report(status); };
   return rig;
 }
 
@@ -80,16 +92,17 @@ RigDevice makeEmulated(const Rig& rig, ConfigReader& reader, ConfigReader& emula
 
 }  // namespace
 
-RigDevice makeRigDevice(const std::string& name, bool emulated, const ManipulatorGeometry& geometry,
+RigDevice makeRigDevice(const std::string& name, bool emulated, const ManipulatorGeometry& geometry, Cycle& cycle,
                         ConfigReader reader, ConfigReader emulator) {
-  if (name == "sim") {
-    if (emulated) throw ConfigError("emulated = true: must be false with rig = sim, which has no driver");
-    return makeSimulated(geometry, reader);
+  if (name == "sim" || name == "external") {
+    if (emulated) throw ConfigError("emulated = true: must be false with rig = " + name + ", which has no driver");
+    return name == "sim" ? makeSimulated(geometry, reader) : makeExternal(geometry, cycle, reader);
   }
   const Rig& rig = findRig(name);
   if (emulated) return makeEmulated(rig, reader, emulator);
   RigDevice result;
   result.device = rig.make_driver(reader, nullptr);
+  result.moves_in_real_time = true;
   return result;
 }
 

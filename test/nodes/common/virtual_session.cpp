@@ -28,6 +28,17 @@ void merge(YAML::Node base, const YAML::Node& more) {
   }
 }
 
+/// Of an external rig all else is as for a simulated one, unless a test says otherwise.
+std::vector<std::string> completed(std::vector<std::string> overrides) {
+  if (std::find(overrides.begin(), overrides.end(), "rig.name:=external") == overrides.end()) return overrides;
+  for (const std::string key : {"rig.allow_network:=true", "sensor.source:=simulated", "injector:=simulated",
+                                "injection.auto_enable:=true", "injection.start_when_enabled:=true"}) {
+    const auto is_of_key = [&](const std::string& other) { return other.rfind(key.substr(0, key.find('=')), 0) == 0; };
+    if (std::none_of(overrides.begin(), overrides.end(), is_of_key)) overrides.push_back(key);
+  }
+  return overrides;
+}
+
 }  // namespace
 
 HeardDiagnostics::HeardDiagnostics(Bus& bus) {
@@ -87,11 +98,15 @@ UserFolders::~UserFolders() {
 }
 
 VirtualSession::VirtualSession(const std::vector<std::string>& overrides, const std::string& file)
-    : session_(Session::load(file, overrides, MICROINJECTION_SOURCE_DIR)),
+    : session_(Session::load(file, completed(overrides), MICROINJECTION_SOURCE_DIR)),
       plan_(planOf(session_, SessionClock::kVirtual)) {
   executive_.add("world", [this](Bus& bus) { return world_ = std::make_shared<TestNode>(bus); });
   executive_.add("diagnostics_probe",
                  [this](Bus& bus) { return diagnostics_ = std::make_shared<HeardDiagnostics>(bus); });
+  if (session_.rig.external()) {
+    stage_ = std::make_unique<LabStage>(plan_.parameters["robot_description"].Scalar());
+    executive_.add("my_rig", [this](Bus& bus) { return std::make_shared<LabStageNode>(bus, *stage_); });
+  }
   SessionPlan frames_only = plan_;
   frames_only.nodes.clear();
   addNodes(executive_, frames_only);

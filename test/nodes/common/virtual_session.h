@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "lab_stage.h"
 #include "nodes/executive/executive.h"
 #include "session/session.h"
 #include "session/session_plan.h"
@@ -55,7 +56,8 @@ class UserFolders {
 /// "world". Files that nodes keep for a user go into a folder of the test's own.
 ///
 /// Nodes are taken from the plan of a session file (default: config/sessions/default.yaml), with overrides such as
-/// "hand.device:=none": all of them at once with start(), or one by one with add(), each with changed parameters.
+/// "hand.device:=none": all of them at once with start(), or one by one with add(), each with changed parameters. With
+/// rig.name:=external a stage and its node, "my_rig", take part, with the simulated sensor and injector.
 class VirtualSession {
  public:
   explicit VirtualSession(const std::vector<std::string>& overrides = {}, const std::string& file = "default");
@@ -75,6 +77,8 @@ class VirtualSession {
   TestNode& addTestNode(const std::string& name, double period = 1e-3);
 
   TestNode& world() { return *world_; }
+  /// Null unless the rig is external.
+  LabStage* stage() { return stage_.get(); }
   Executive& executive() { return executive_; }
   const HeardDiagnostics& diagnostics() const { return *diagnostics_; }
   HeardDiagnostics& diagnostics() { return *diagnostics_; }
@@ -103,6 +107,7 @@ class VirtualSession {
   Session session_;
   SessionPlan plan_;
   Executive executive_;
+  std::unique_ptr<LabStage> stage_;
   std::shared_ptr<TestNode> world_;
   std::shared_ptr<HeardDiagnostics> diagnostics_;
   std::vector<std::string> added_;

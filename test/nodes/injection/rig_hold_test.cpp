@@ -6,7 +6,8 @@
 namespace microinjection {
 namespace {
 
-/// A rig, and what keeps it from following its stream while the controller indents by itself.
+/// A rig, and what keeps it from following its stream while the controller indents by itself. With `its_` before it, of
+/// the node that moves an external rig.
 struct RigHold {
   std::string rig, by;
 };
@@ -20,6 +21,10 @@ class RigHoldTest : public testing::TestWithParam<RigHold> {
   }
   TestNode& world() { return chain_.session.world(); }
   void begin() {
+    if (GetParam().by == "its_disable") chain_.session.stage()->state = "DISABLED";
+    if (GetParam().by == "its_silence") chain_.session.stage()->inject("silence:3", chain_.session.now());
+    if (GetParam().by == "its_restart") chain_.session.executive().kill("my_rig");
+    if (isOfItsNode()) return;
     if (GetParam().by == "restart") return chain_.session.executive().kill("micromanipulator");
     world().command("needle/state_command", GetParam().by);
   }
@@ -28,8 +33,17 @@ class RigHoldTest : public testing::TestWithParam<RigHold> {
       chain_.session.executive().restart("micromanipulator");
       chain_.session.run(1);
     }
+    if (GetParam().by == "its_restart") {
+      chain_.session.stage()->first_state = "DISABLED";
+      chain_.session.executive().restart("my_rig");
+      chain_.session.run(1);
+    }
     world().command("needle/state_command", GetParam().by == "pause" ? "resume" : "enable");
+    if (!isOfItsNode()) return;
+    chain_.session.run(0.7);  // until that obeys; then the needle's streams are let go
+    world().command("needle/state_command", "enable");
   }
+  static bool isOfItsNode() { return GetParam().by.rfind("its_", 0) == 0; }
   std::string controllerState() {
     return world().hear<cell_microinjection::OperatingState>("controller/operating_state").newest()->state;
   }
@@ -46,7 +60,7 @@ TEST_P(RigHoldTest, PausesTheInjectionAndNothingLeapsAfterIt) {
   ASSERT_TRUE(chain_.session.until([&] { return chain_.status().depth > 1e-6; }));
   begin();
   chain_.session.run(3);
-  const bool is_dead = GetParam().by == "restart";
+  const bool is_dead = GetParam().by == "restart" || GetParam().by == "its_restart" || GetParam().by == "its_silence";
   EXPECT_EQ(controllerState(), "PAUSED");
   EXPECT_NE(holdReason().find(is_dead ? "no valid needle position" : "the micromanipulator "), std::string::npos)
       << holdReason();
@@ -65,8 +79,10 @@ TEST_P(RigHoldTest, PausesTheInjectionAndNothingLeapsAfterIt) {
 
 std::vector<RigHold> holds() {
   std::vector<RigHold> all;
-  for (const char* rig : {"sim", "emulated_zaber", "emulated_mp285", "emulated_scientifica", "emulated_eppendorf"})
+  for (const char* rig :
+       {"sim", "emulated_zaber", "emulated_mp285", "emulated_scientifica", "emulated_eppendorf", "external"})
     for (const char* by : {"disable", "stop", "pause", "restart"}) all.push_back({rig, by});
+  for (const char* by : {"its_disable", "its_silence", "its_restart"}) all.push_back({"external", by});
   return all;
 }
 INSTANTIATE_TEST_SUITE_P(Rigs, RigHoldTest, testing::ValuesIn(holds()),

@@ -68,11 +68,12 @@ TEST_P(WholeInjectionTest, GoesThroughTheZonaInjectsAndComesOut) {
   EXPECT_GT(done.volume, 0);
 }
 
-/// The simulated rig and each that is emulated, with the simulated injector; the simulated rig with each that is
-/// emulated.
+/// The simulated rig, each that is emulated, and another's node, with the simulated injector; the simulated rig with
+/// each that is emulated.
 std::vector<Devices> allDevices() {
   std::vector<Devices> all{{"sim", "simulated"}};
   for (const Rig& rig : rigs()) all.push_back({"emulated_" + rig.name, "simulated"});
+  all.push_back({"external", "simulated"});
   for (const Injector& injector : injectors()) all.push_back({"sim", "emulated_" + injector.name});
   return all;
 }

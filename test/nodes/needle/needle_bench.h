@@ -59,7 +59,10 @@ class NeedleBench {
   void servo(const Pose& pose) { world.repeat<Pose>("needle/servo_cp", pose); }
   void silence() { world.silence("needle/servo_cp"); }
   void command(const std::string& word) { world.command("needle/state_command", word); }
-  void inject(const std::string& fault) { world.command("needle/emulated_fault", fault); }
+  void inject(const std::string& fault) {
+    if (session.stage()) return session.stage()->inject(fault, session.now());
+    world.command("needle/emulated_fault", fault);
+  }
 
   /// m; not a number while the rig does not know.
   static Eigen::Vector3d placeOf(const Pose& pose) {

@@ -27,6 +27,8 @@ std::vector<RigSet> rigSets() {
   sets.push_back({"zaber_chain", "emulated_zaber",
                   "{device: {devices: [1, 2, 3], axes: [1, 1, 1]}, "
                   "emulator: {chained: true, alerts: true, info_every: 3}}"});
+  sets.push_back({"external", "external"});
+  sets.push_back({"external_poses", "external", "{device: {positions: poses}}"});
   return sets;
 }
 
@@ -103,6 +105,7 @@ TEST_P(RigNode, AStopIsToldInTime) {
 /// Faults of this rig, and whether they wait for enable; it may get over the others by itself.
 std::map<std::string, bool> faultsOf(const std::string& rig) {
   if (rig == "sim") return {{"error:4", true}};
+  if (rig == "external") return {{"silence:1.5", false}, {"silence:4", false}, {"error:4", true}};
   if (rig == "emulated_zaber")
     return {{"silence:1.5", false}, {"silence:4", true}, {"error:BADDATA", true}, {"error:FS", true}};
   return {{"silence:1.5", false}, {"silence:4", true}, {"error:4", false}};
