@@ -137,7 +137,7 @@ TEST_F(SessionTest, RefusesAFileWithLineKeyValueAndWhatIsAllowedAllErrorsAtOnce)
   const std::string lab = path("lab.yaml");
   for (const std::string& part :
        {lab + ", line 3: rig/name = lathe: must be one of: sim, eppendorf",
-        lab + ", line 4: rig/speed: unknown key; known here: allow_network, config, name, port, urdf",
+        lab + ", line 4: rig/speed: unknown key; known here: allow_network, config, name, namespace, port, urdf",
         lab + ", line 5: twin = perhaps: must be true or false",
         lab + ", line 6: hand/motion = none.yaml: no such file: " + path("none.yaml"),
         lab + ", line 7: twin: is there twice, first in line 5; must be there once"})
