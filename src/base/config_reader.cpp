@@ -8,6 +8,7 @@
 #include <map>
 #include <sstream>
 
+#include "base/absolute_path.h"
 #include "base/errors.h"
 
 namespace microinjection {
@@ -261,6 +262,17 @@ void ConfigReader::text(const std::string& key, std::string& value, Presence pre
   if (!node.IsDefined()) return;
   if (!node.IsScalar()) return error(key, "must be text");
   value = node.Scalar();
+}
+
+void ConfigReader::path(const std::string& key, std::string& value, Presence presence) {
+  const YAML::Node node = find(key, presence);
+  if (!node.IsDefined()) return;
+  if (!node.IsScalar()) return error(key, "must be text");
+  const std::string read = node.Scalar();
+  const bool home = read.rfind("~/", 0) == 0, none = read.empty() && presence == kOptional;
+  if (!none && !home && read.rfind('/', 0) != 0)
+    return error(key, "must be an absolute path, or begin with ~/: a node does not run in your folder");
+  value = home ? absolutePath(read, "/") : read;
 }
 
 void ConfigReader::choice(const std::string& key, std::string& value, const std::vector<std::string>& allowed,

@@ -1,5 +1,6 @@
 #include "session/session.h"
 
+#include <cstdlib>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -11,6 +12,7 @@
 #include "base/standard_output.h"
 #include "commands/session_arguments.h"
 #include "session/launch_file.h"
+#include "session/surroundings.h"
 
 namespace microinjection {
 namespace {
@@ -27,6 +29,8 @@ std::string digest(const SessionPlan& plan, const SessionArguments& arguments) {
 
 void writeLaunchFile(SessionPlan plan, const SessionArguments& arguments) {
   if (!arguments.only.empty()) plan.keepOnly(arguments.only);
+  for (const std::string& warning : surroundingsWarnings(plan, [](const char* name) { return std::getenv(name); }))
+    std::cerr << "session: warning: " << warning << '\n';
   const std::string view_file = arguments.launch + ".rviz", view = rvizView(plan);
   if (!view.empty()) writeFileAtomically(view_file, view);
   writeFileAtomically(arguments.launch, launchText(plan, view_file));

@@ -29,7 +29,7 @@ const char* const CalibrationNode::kHelp =
 CalibrationNode::Parameters CalibrationNode::Parameters::read(const Bus& bus) {
   Parameters parameters;
   ConfigReader reader = parameterReader(bus);
-  reader.text("file", parameters.file);
+  reader.path("file", parameters.file);
   reader.number("input_timeout", parameters.input_timeout, Range::positive());
   parameters.calibration = CalibrationConfig::read(reader);
   reader.finish();

@@ -17,9 +17,9 @@ const char* const CellSimulatorNode::kHelp =
 CellSimulatorNode::Parameters CellSimulatorNode::Parameters::read(const Bus& bus) {
   Parameters parameters;
   ConfigReader reader = parameterReader(bus);
-  reader.text("scene", parameters.scene, ConfigReader::kRequired);
+  reader.path("scene", parameters.scene, ConfigReader::kRequired);
   reader.choice("model", parameters.model, {"auto", "prepared", "live", "explicit"});
-  reader.text("families", parameters.models.families);
+  reader.path("families", parameters.models.families);
   reader.choice("needle", parameters.needle, {"measured", "true"});
   reader.number("rate", parameters.rate, Range::closed(50, 5000));
   reader.number("state_rate", parameters.state_rate, {0, 100, true, false});

@@ -43,7 +43,8 @@ HapticBridgeNode::Parameters HapticBridgeNode::Parameters::read(const Bus& bus) 
   ConfigReader reader = parameterReader(bus);
   reader.number("rate", parameters.rate, Range::closed(50, 5000));
   reader.boolean("force_feedback", parameters.force_feedback);
-  reader.text("axes_file", parameters.axes_file);
+  reader.path("axes_file", parameters.axes_file);
+  reader.boolean("quiet_sensor", parameters.quiet_sensor);
   parameters.timeouts = Timeouts::read(reader.section("timeouts"));
   parameters.model = HapticBridgeConfig::read(reader);
   parameters.link = LinkConfig::read(reader.section("link"));

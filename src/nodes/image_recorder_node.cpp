@@ -29,7 +29,7 @@ const char* const ImageRecorderNode::kHelp =
 
 ImageRecorderNode::ImageRecorderNode(Bus& bus) : diagnostics_(bus) {
   ConfigReader reader = parameterReader(bus);
-  reader.text("output_dir", folder_, ConfigReader::kRequired);
+  reader.path("output_dir", folder_, ConfigReader::kRequired);
   reader.number("rate", rate_, Range::closed(1, 1000));
   reader.finish();
   requireWritableFolder(folder_);

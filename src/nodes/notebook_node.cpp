@@ -37,7 +37,7 @@ const char* const NotebookNode::kHelp =
 
 NotebookNode::NotebookNode(Bus& bus) : bus_(bus), diagnostics_(bus) {
   ConfigReader reader = parameterReader(bus);
-  reader.text("file", file_, ConfigReader::kRequired);
+  reader.path("file", file_, ConfigReader::kRequired);
   reader.text("cell", cell_);
   reader.finish();
   requireWritableFolder(folderOf(file_));

@@ -22,7 +22,7 @@ const char* const OperatorNode::kHelp =
 OperatorNode::Parameters OperatorNode::Parameters::read(const Bus& bus) {
   Parameters parameters;
   ConfigReader reader = parameterReader(bus);
-  reader.text("motion", parameters.motion, ConfigReader::kRequired);
+  reader.path("motion", parameters.motion, ConfigReader::kRequired);
   reader.number("start_delay", parameters.start_delay, Range::nonNegative());
   reader.boolean("wait_for_go", parameters.wait_for_go);
   reader.number("rate", parameters.rate, Range::closed(50, 5000));

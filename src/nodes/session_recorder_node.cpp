@@ -65,7 +65,7 @@ const char* const SessionRecorderNode::kHelp =
 SessionRecorderNode::Parameters SessionRecorderNode::Parameters::read(const Bus& bus) {
   Parameters parameters;
   ConfigReader reader = parameterReader(bus);
-  reader.text("output_dir", parameters.output_dir, ConfigReader::kRequired);
+  reader.path("output_dir", parameters.output_dir, ConfigReader::kRequired);
   reader.number("row_period", parameters.row_period, Range::positive());
   reader.boolean("hand", parameters.hand);
   reader.boolean("injector", parameters.injector);

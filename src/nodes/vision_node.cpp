@@ -41,8 +41,8 @@ const char* const VisionNode::kHelp =
 VisionNode::Parameters VisionNode::Parameters::read(const Bus& bus) {
   Parameters parameters;
   ConfigReader reader = parameterReader(bus);
-  reader.text("scene", parameters.scene);
-  reader.text("families", parameters.families);
+  reader.path("scene", parameters.scene);
+  reader.path("families", parameters.families);
   parameters.vision = VisionConfig::read(reader);
   acceptImageTransport(reader);
   reader.finish();

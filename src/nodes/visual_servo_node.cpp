@@ -26,7 +26,7 @@ const char* const VisualServoNode::kHelp =
 VisualServoNode::Parameters VisualServoNode::Parameters::read(const Bus& bus) {
   Parameters parameters;
   ConfigReader reader = parameterReader(bus);
-  reader.text("calibration", parameters.calibration);
+  reader.path("calibration", parameters.calibration);
   reader.number("input_timeout", parameters.input_timeout, Range::positive());
   parameters.approach = ImageApproachConfig::read(reader);
   reader.finish();

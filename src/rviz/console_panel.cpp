@@ -1,10 +1,13 @@
 #include "rviz/console_panel.h"
 
+#include <ros/console.h>
 #include <rviz/visualization_manager.h>
 #include <pluginlib/class_list_macros.hpp>
 
 #include <QTimer>
 #include <QVBoxLayout>
+#include <clocale>
+#include <string>
 
 #include "nodes/bus/ros_bus.h"
 #include "rviz/console_widget.h"
@@ -31,6 +34,11 @@ ConsolePanel::~ConsolePanel() {
 QSize ConsolePanel::sizeHint() const { return console_->sizeHint(); }
 
 void ConsolePanel::onInitialize() {
+  // Qt takes the user's locale. A session starts rviz with LC_ALL=C; a person may have started this one.
+  if (std::string(std::localeconv()->decimal_point) != ".")
+    ROS_ERROR(
+        "this rviz reads numbers with another decimal sign than a point and misplaces what it shows: start it with "
+        "LC_ALL=C");
   bus_ = std::make_shared<RosBus>(RosBus::Master::kIgnored);
   console_->start(bus_);
   connect(timer_, &QTimer::timeout, this, [this] { console_->tick(); });

@@ -34,6 +34,22 @@ std::string parametersText(const YAML::Node& parameters, int indent) {
   return space + "<rosparam>\n" + escaped(parameterText(parameters, indent + 2)) + space + "</rosparam>\n";
 }
 
+/// A map is the parameters of a node that a person starts: those of an earlier session on this master go, too.
+std::string globalParametersText(const YAML::Node& parameters) {
+  YAML::Node values(YAML::NodeType::Map);
+  std::string groups;
+  for (const auto& item : parameters) {
+    const std::string name = item.first.Scalar();
+    if (!item.second.IsMap()) {
+      values[name] = item.second;
+    } else {
+      groups += "  <group" + attribute("ns", name) + attribute("clear_params", "true") + ">\n" +
+                parametersText(item.second, 4) + "  </group>\n";
+    }
+  }
+  return parametersText(values, 2) + groups;
+}
+
 std::string remapsText(const std::map<std::string, std::string>& remaps) {
   std::string text;
   for (const auto& [from, to] : remaps) text += "    <remap" + attribute("from", from) + attribute("to", to) + "/>\n";
@@ -80,7 +96,7 @@ std::string processText(const ForeignProcess& process, const std::string& view_f
 }  // namespace
 
 std::string launchText(const SessionPlan& plan, const std::string& view_file) {
-  std::string text = "<launch>\n" + parametersText(plan.parameters, 2);
+  std::string text = "<launch>\n" + globalParametersText(plan.parameters);
   for (const NodePlan& node : plan.nodes) text += nodeText(node);
   for (const StaticFrame& frame : plan.frames) text += frameText(frame);
   for (const ForeignProcess& process : plan.processes) text += processText(process, view_file);

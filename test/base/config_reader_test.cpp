@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <fstream>
 #include <functional>
 #include <string>
@@ -253,6 +254,30 @@ TEST(LoadYamlMap, NamesTheCharacterThatMakesAFileNoYaml) {
                 .find("; line 2 has a no-break space U+00A0"),
             std::string::npos);
   EXPECT_EQ(refused("# 6\xc2\xa0um\ncell: [\n").find("no-break"), std::string::npos) << "a comment may have it";
+}
+
+TEST(ConfigReader, APathOfANodeIsAbsoluteOrFromTheHomeFolder) {
+  ConfigReader reader(YAML::Load("{absolute: /data/cell.yaml, home: ~/today, none: '', relative: today, "
+                                 "above: ../today, nothing: '', list: [a]}"),
+                      "node");
+  std::string absolute, home, none = "before", relative = "before", above, nothing, list, absent = "default";
+  reader.path("absolute", absolute);
+  reader.path("home", home);
+  reader.path("none", none);
+  reader.path("absent", absent);
+  EXPECT_EQ(absolute, "/data/cell.yaml");
+  EXPECT_EQ(home, std::string(std::getenv("HOME")) + "/today");
+  EXPECT_EQ(none, "");
+  EXPECT_EQ(absent, "default");
+  reader.path("relative", relative);
+  reader.path("above", above);
+  reader.path("nothing", nothing, ConfigReader::kRequired);
+  reader.path("list", list);
+  EXPECT_EQ(relative, "before");
+  const std::string text = errorsOf([&] { reader.finish(); });
+  for (const char* part : {"relative = today: must be an absolute path, or begin with ~/", "above = ../today: must be",
+                           "nothing = ", "list"})
+    EXPECT_NE(text.find(part), std::string::npos) << part << "\nis not in\n" << text;
 }
 
 TEST(LoadYamlMap, NamesTheFile) {

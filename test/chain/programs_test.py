@@ -114,6 +114,15 @@ class ProgramsTest(unittest.TestCase):
         self.assertFalse(first.ended(), "the first one was ended")
         self.assertEqual(first.end()[0], 0)
 
+    def test_a_clock_that_was_left_on_is_refused(self):
+        rospy.set_param("/use_sim_time", True)
+        self.addCleanup(rospy.set_param, "/use_sim_time", False)
+        self.check_refused("display", "without_time", {}, ["/use_sim_time is true", "rosparam set /use_sim_time false"])
+
+    def test_a_relative_path_is_refused(self):
+        self.check_refused("image_recorder", "without_folder", {"output_dir": "today"},
+                           ["output_dir = today: must be an absolute path"])
+
     def test_keys_need_a_terminal(self):
         self.check_refused("keyboard_hand", "refused_without_terminal", {}, ["needs a terminal"], terminal=False)
 

@@ -55,6 +55,19 @@ TEST_F(LaunchFileTest, HasTheNodesWithTheirParametersAndNothingElse) {
   EXPECT_EQ(root->FirstChildElement("include"), nullptr);
 }
 
+/// The node that the operator starts in a terminal refuses what it does not know.
+TEST_F(LaunchFileTest, AKeyboardHasTheParametersOfThisSessionOnly) {
+  const XMLElement* root = launch({"hand.device:=keyboard"});
+  const XMLElement* group = root->FirstChildElement("group");
+  ASSERT_NE(group, nullptr);
+  EXPECT_STREQ(group->Attribute("ns"), "keyboard_hand");
+  EXPECT_STREQ(group->Attribute("clear_params"), "true");
+  const SessionPlan plan = planOf(session({"hand.device:=keyboard"}), SessionClock::kWall);
+  EXPECT_EQ(parameterText(YAML::Load(group->FirstChildElement("rosparam")->GetText())),
+            parameterText(plan.parameters["keyboard_hand"]));
+  EXPECT_FALSE(YAML::Load(root->FirstChildElement("rosparam")->GetText())["keyboard_hand"].IsDefined());
+}
+
 TEST_F(LaunchFileTest, StartsNodesAsTheyAreMeant) {
   const std::vector<std::string> all = {"hand.device:=omni", "record.folder:=/out", "camera.source:=sim",
                                         "rig.name:=emulated_zaber", "sensor.mounting:=[0, 0, 0.05, 0, 0, 1.5]"};

@@ -7,8 +7,8 @@ namespace microinjection {
 CellEstimatorParameters CellEstimatorParameters::read(const Bus& bus) {
   CellEstimatorParameters parameters;
   ConfigReader reader = parameterReader(bus);
-  reader.text("scene", parameters.scene, ConfigReader::kRequired);
-  reader.text("families", parameters.families, ConfigReader::kRequired);
+  reader.path("scene", parameters.scene, ConfigReader::kRequired);
+  reader.path("families", parameters.families, ConfigReader::kRequired);
   reader.number("rate", parameters.rate, Range::closed(50, 5000));
   reader.number("update_period", parameters.update_period, Range::closed(0.005, 1));
   reader.number("needle_timeout", parameters.needle_timeout, Range::positive());

@@ -43,6 +43,13 @@ int runNode(int argc, char** argv, const std::string& name, Priority priority = 
                  ros::this_node::getName().c_str(), other.c_str());
     return 1;
   }
+  if (bool simulated = false; ros::param::get("/use_sim_time", simulated) && simulated) {
+    std::fprintf(stderr,
+                 "%s: the parameter /use_sim_time is true: time would stand, and so would this node, until somebody "
+                 "publishes /clock. rosparam set /use_sim_time false, or start a session, which does.\n",
+                 ros::this_node::getName().c_str());
+    return 1;
+  }
   prefer(priority);
   if (ending == ShutdownMode::kInGoodOrder) endInGoodOrder();
   // The handle outlives the try block: the end of the last one shuts ROS and its log down.

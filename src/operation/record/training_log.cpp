@@ -59,7 +59,7 @@ std::string toText(const TrainingConfig& config, const std::string& session, con
 TrainingConfig TrainingConfig::read(ConfigReader& reader) {
   TrainingConfig config;
   reader.text("operator", config.operator_name, ConfigReader::kRequired);
-  reader.text("history", config.history, ConfigReader::kRequired);
+  reader.path("history", config.history, ConfigReader::kRequired);
   reader.choice("force", config.force, {"predicted", "measured"});
   reader.choice("punctures", config.punctures, {"cell", "felt"});
   ConfigReader task = reader.section("task");

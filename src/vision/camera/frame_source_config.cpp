@@ -20,7 +20,7 @@ FrameSourceConfig FrameSourceConfig::read(ConfigReader& reader) {
     config.device = DeviceSourceConfig::read(device);
     return config;
   }
-  reader.text("path", config.path, ConfigReader::kRequired);
+  reader.path("path", config.path, ConfigReader::kRequired);
   reader.number("rate", config.rate, kAskedRate);
   reader.boolean("loop", config.loop);
   if (config.source == "folder" && config.rate == 0) reader.error("rate", "must be above 0 for a folder");

@@ -10,7 +10,7 @@ namespace microinjection {
 
 VisionConfig VisionConfig::read(ConfigReader& reader) {
   VisionConfig config;
-  reader.text("calibration", config.calibration);
+  reader.path("calibration", config.calibration);
   reader.number("pixel_size", config.pixel_size, Range::closed(0, 1e-4));
   reader.number("image_timeout", config.image_timeout, Range::positive());
   reader.number("serve_timeout", config.serve_timeout, Range::positive());

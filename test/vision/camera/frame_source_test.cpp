@@ -305,8 +305,9 @@ std::string configErrorOf(const std::string& yaml) {
 }
 
 TEST(FrameSourceConfig, ReadsEachKindOfSource) {
-  EXPECT_EQ(configErrorOf("{source: folder, path: a, rate: 5, loop: true}"), "");
-  EXPECT_EQ(configErrorOf("{source: video, path: a.avi, rate: 0}"), "");
+  EXPECT_EQ(configErrorOf("{source: folder, path: /a, rate: 5, loop: true}"), "");
+  EXPECT_EQ(configErrorOf("{source: video, path: /a.avi, rate: 0}"), "");
+  EXPECT_NE(configErrorOf("{source: video, path: a.avi, rate: 0}").find("must be an absolute path"), std::string::npos);
   EXPECT_EQ(configErrorOf("{source: device, device: {device: /dev/video2, width: 640, height: 480, format: Y16, "
                           "rate: 30, exposure: 100, gain: 0}}"),
             "");
