@@ -33,7 +33,6 @@ ForceSensorNode::Parameters ForceSensorNode::Parameters::read(const Bus& bus) {
   reader.number("input_timeout", parameters.input_timeout, Range::positive());
   reader.number("averaging", parameters.averaging, Range::positive());
   reader.text("frame", parameters.frame);
-  reader.boolean("quiet", parameters.quiet);
   reader.number("frame_timeout", parameters.frame_timeout, Range::positive());
   reader.path("file", parameters.file);
   // A simulated sensor is another one in each session; a wrench is calibrated where it is measured.

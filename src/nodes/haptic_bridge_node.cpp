@@ -44,7 +44,6 @@ HapticBridgeNode::Parameters HapticBridgeNode::Parameters::read(const Bus& bus) 
   reader.number("rate", parameters.rate, Range::closed(50, 5000));
   reader.boolean("force_feedback", parameters.force_feedback);
   reader.path("axes_file", parameters.axes_file);
-  reader.boolean("quiet_sensor", parameters.quiet_sensor);
   parameters.timeouts = Timeouts::read(reader.section("timeouts"));
   parameters.model = HapticBridgeConfig::read(reader);
   parameters.link = LinkConfig::read(reader.section("link"));
