@@ -7,11 +7,26 @@
 #include "rig/devices/mp285/mp285_emulator.h"
 #include "rig/devices/scientifica/scientifica_driver.h"
 #include "rig/devices/scientifica/scientifica_emulator.h"
+#include "rig/devices/scientifica/scientifica_wire.h"
 #include "rig/devices/zaber/zaber_driver.h"
 #include "rig/devices/zaber/zaber_emulator.h"
+#include "rig/serial/udp_wire.h"
 
 namespace microinjection {
 namespace {
+
+template <typename Config>
+std::unique_ptr<Wire> wireTo(const Config& config) {
+  return makeWire(config.port);
+}
+
+std::unique_ptr<Wire> wireTo(const ScientificaConfig& config) {
+  return std::make_unique<ScientificaWire>(config.port.baud, [port = config.port](int baud) {
+    SerialPortConfig at_rate = port;
+    at_rate.baud = baud;
+    return makeWire(at_rate);
+  });
+}
 
 template <typename Config, typename Driver, typename Emulator>
 Rig rig(const std::string& name, int default_baud) {
@@ -19,7 +34,7 @@ Rig rig(const std::string& name, int default_baud) {
           [](ConfigReader& reader, std::unique_ptr<Wire> wire) -> std::unique_ptr<ManipulatorDevice> {
             const Config config = Config::read(reader);
             reader.finish();
-            if (!wire) wire = std::make_unique<SerialPort>(config.port);
+            if (!wire) wire = wireTo(config);
             return std::make_unique<Driver>(config, std::move(wire));
           },
           [] { return std::make_shared<Emulator>(); }};

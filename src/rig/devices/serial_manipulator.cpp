@@ -139,6 +139,22 @@ void SerialManipulator::clearReachedGoal() {
   if (goal_ && !goes_on && mayMove() && !moving()) dropGoal();
 }
 
+/// Whether something else has come than lines that the device sends by itself, whole and printable,
+/// such as a Zaber's info lines: of these there may be so many that the line is never silent.
+bool SerialManipulator::isNoise(const std::string& bytes) {
+  constexpr std::size_t kLongestNotice = 256;  // characters
+  if (link_.notice.empty()) return !bytes.empty();
+  bool noise = false;
+  for (const char each : bytes) {
+    notice_ += each;
+    const bool begins = notice_.compare(0, link_.notice.size(), link_.notice, 0, notice_.size()) == 0;
+    const bool printable = each == '\r' || each == '\n' || (each >= ' ' && each <= '~');
+    noise = noise || !begins || !printable || notice_.size() > kLongestNotice;
+    if (!begins || !printable || each == '\n' || notice_.size() > kLongestNotice) notice_.clear();
+  }
+  return noise;
+}
+
 void SerialManipulator::step(double time) {
   active_time_ += std::min(time - time_, kLongestGap);
   time_ = time;
@@ -162,7 +178,7 @@ void SerialManipulator::step(double time) {
     beginSession(exchanging_ && !clearing_ ? link_.quiet_in_step : std::max(quiet_, link_.quiet_in_step));
   }
   if (!exchanging_) {
-    if (!bytes.empty()) last_byte_ = active_time_;
+    if (isNoise(bytes)) last_byte_ = active_time_;
     if (active_time_ - drain_since_ > kLongestDrain)
       return exchangeFailed("the line is never silent; is it the right port?");
     if (active_time_ - last_byte_ < quiet_) return;

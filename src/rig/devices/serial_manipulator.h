@@ -41,6 +41,7 @@ class SerialManipulator : public ManipulatorDevice {
     double quiet_in_step = 0;     ///< s of silence after which no reply to a stop is pending
     double quiet_after_loss = 0;  ///< s of silence after which neither late replies nor an incomplete command remain
     std::string farewell{};       ///< bytes after the last stop, to return control to the operator
+    std::string notice{};         ///< how lines begin that the device sends by itself at any time; empty: it sends none
   };
   struct Goal {
     bool follows = false;                                ///< a set-point, otherwise a move
@@ -104,6 +105,7 @@ class SerialManipulator : public ManipulatorDevice {
   void connectionLost();
   bool guarded();
   void disconnect();
+  bool isNoise(const std::string& bytes);
   void clearReachedGoal();
 
   std::unique_ptr<Wire> wire_;
@@ -115,6 +117,7 @@ class SerialManipulator : public ManipulatorDevice {
   double next_stop_ = 0;    // s, while there is no guard
   double last_byte_ = 0;    // s of active_time_, since the stop
   double drain_since_ = 0;  // s of active_time_
+  std::string notice_;      // the beginning of a line that the device sends by itself
   double quiet_ = 0;        // s, of silence to wait for
   bool was_open_ = false, exchanging_ = false, ready_ = false, clearing_ = false, stop_wanted_ = false;
   bool positions_valid_ = false;

@@ -20,7 +20,7 @@ std::string stopAll(const ZaberConfig& config) {
 ZaberDriver::ZaberDriver(const ZaberConfig& config, std::unique_ptr<Wire> wire)
     : SerialManipulator(std::move(wire),
                         {"Zaber", stopAll(config), config.answer_time + 60 * config.byteTime() + 5e-3,
-                         config.reply_timeout + (kZaberCommandBytes + kZaberReplyBytes) * config.byteTime()}),
+                         config.reply_timeout + (kZaberCommandBytes + kZaberReplyBytes) * config.byteTime(), "", "#"}),
       config_(config),
       parser_(config.reply_checksum),
       answer_time_(config.answer_time),
