@@ -214,8 +214,8 @@ void ForceSensorNode::report(diagnostic_updater::DiagnosticStatusWrapper& status
   const std::string unwritten = file_ ? file_->error() : "";
   if (source_->overloaded()) {
     status.summary(DiagnosticStatus::ERROR, "overloaded: " + source_->overloadText() + "; call the service ~reset");
-  } else if (!invalidReason().empty()) {
-    status.summary(DiagnosticStatus::WARN, invalidReason());
+  } else if (!source_->invalidReason().empty()) {
+    status.summary(DiagnosticStatus::WARN, source_->invalidReason());
   } else if (!unwritten.empty()) {
     status.summary(DiagnosticStatus::WARN, unwritten);
   } else {
