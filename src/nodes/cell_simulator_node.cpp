@@ -8,10 +8,16 @@
 #include "nodes/runtime/node_parameters.h"
 
 namespace microinjection {
+namespace {
+
+constexpr double kContactPeriod = 0.02;  ///< s, of /cell/contact without a change
+
+}  // namespace
 
 const char* const CellSimulatorNode::kHelp =
     "cell_simulator: the finite-element cell under the needle.\n"
-    "In: /needle/measured_cp or /needle/true_cp, /cell/set_parameters. Out: /cell/predicted_cf, /cell/state.\n"
+    "In: /needle/measured_cp or /needle/true_cp, /cell/set_parameters. Out: /cell/predicted_cf, /cell/contact, "
+    "/cell/state.\n"
     "Service: ~set_cell_parameters.\n";
 
 CellSimulatorNode::Parameters CellSimulatorNode::Parameters::read(const Bus& bus) {
@@ -36,12 +42,14 @@ CellSimulatorNode::CellSimulatorNode(Bus& bus)
       needle_(cycle_.input<geometry_msgs::PoseStamped>("needle/" + parameters_.needle + "_cp", InputPhase::kDrives,
                                                        parameters_.needle_timeout)),
       force_(cycle_.output<geometry_msgs::WrenchStamped>("cell/predicted_cf")),
+      contact_(cycle_.output<cell_microinjection::CellContact>("cell/contact")),
       state_(cycle_.output<cell_microinjection::CellState>("cell/state", true)) {
   parameters_.models.online.fixed_period = cycle_.bus().isVirtual();
   const Scene scene = loadScene(parameters_.scene);
   chosen_ = makeCell(scene);
   cell_ = std::make_unique<PlacedCell>(*chosen_.cell);
   invalid_reason_.reserve(200);  // no allocation in a step
+  can_be_punctured_ = !cell_->layers().empty();
   using Thread = CellStatePublisher::Thread;
   const auto thread = cycle_.bus().isVirtual() ? Thread::kOfTheStep : Thread::kOwn;
   state_publisher_ = std::make_unique<CellStatePublisher>(*cell_, scene, state_, parameters_.state_rate, thread);
@@ -78,7 +86,20 @@ void CellSimulatorNode::step(const Cycle::Tick& tick) {
   } else {
     force_.publishInvalid(wrench);
   }
+  publishContact(tick.now);
   state_publisher_->step(moment(tick.now, force));
+}
+
+void CellSimulatorNode::publishContact(const ros::Time& now) {
+  cell_microinjection::CellContact contact;
+  contact.in_contact = cell_->contact().has_value();
+  contact.inside = cell_->insertion().inside;
+  contact.can_be_punctured = can_be_punctured_;
+  const bool same = contact.in_contact == last_contact_.in_contact && contact.inside == last_contact_.inside;
+  if (same && !isDue(last_contact_.header.stamp, now, kContactPeriod)) return;
+  contact.header.stamp = now;
+  contact_.publish(contact);
+  last_contact_ = contact;
 }
 
 /// In virtual time without its processor time, which differs in each run.

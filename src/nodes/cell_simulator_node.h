@@ -9,6 +9,7 @@
 
 #include "cell/choice/make_cell_model.h"
 #include "cell/model/placed_cell.h"
+#include "cell_microinjection/CellContact.h"
 #include "cell_microinjection/CellState.h"
 #include "nodes/cell/cell_parameter_server.h"
 #include "nodes/cell/cell_state_publisher.h"
@@ -19,8 +20,8 @@ namespace microinjection {
 /// The cell under the needle, see makeCellModel. An invalid force has stamp 0.
 ///
 /// In:  /needle/measured_cp or /needle/true_cp (PoseStamped, tip in `world`)
-/// Out: /cell/predicted_cf (WrenchStamped, of the cell on the tip, in `world`), /cell/state
-///      (CellState)
+/// Out: /cell/predicted_cf (WrenchStamped, of the cell on the tip, in `world`), /cell/contact (CellContact, on change
+///      and each 20 ms), /cell/state (CellState)
 /// The cell's parameters change by CellParameterServer.
 ///
 /// Parameters: config/cell_simulator.yaml
@@ -46,6 +47,7 @@ class CellSimulatorNode {
   void step(const Cycle::Tick& tick);
   std::optional<CellModel::Solution> solution(const ros::Time& now) const;
   CellMoment moment(const ros::Time& now, const TipForce& force) const;
+  void publishContact(const ros::Time& now);
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   Parameters parameters_;
@@ -54,7 +56,10 @@ class CellSimulatorNode {
   std::unique_ptr<PlacedCell> cell_;
   Input<geometry_msgs::PoseStamped>& needle_;
   Output<geometry_msgs::WrenchStamped>& force_;
+  Output<cell_microinjection::CellContact>& contact_;
   Output<cell_microinjection::CellState>& state_;
+  cell_microinjection::CellContact last_contact_;
+  bool can_be_punctured_ = false;
   std::string invalid_reason_;  ///< why the last force was invalid; else empty
   // Last members: their threads use the others.
   std::unique_ptr<CellStatePublisher> state_publisher_;

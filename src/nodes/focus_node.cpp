@@ -91,9 +91,8 @@ void FocusNode::onImage(const sensor_msgs::Image& message) {
   blind_ = imageDefect(message);
   reading_receipt_ = receive(message.header.stamp);
   if (blind_.empty() && isOld(reading_receipt_)) blind_ = "the image is old, or stamped ahead";
-  if (blind_.empty() && message.data == last_data_) blind_ = "the camera repeats its last image";
+  if (blind_.empty() && data_.step(message.data, 1)) blind_ = "the camera repeats its last image";
   if (!blind_.empty()) return bus_.refusals().add(kImageTopic, blind_);
-  last_data_ = message.data;
   blind_ = "its format is wrong";  // until it was read: cv_bridge throws
   const Frame frame(pixelsOf(message));
   blind_ = frame.refusal();

@@ -6,11 +6,13 @@
 #include <sensor_msgs/Image.h>
 #include <sensor_msgs/JointState.h>
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "base/repetition.h"
 #include "nodes/bus/goal_node.h"
 #include "nodes/imaging/receipt.h"
 #include "vision/measurement/core_sharpness.h"
@@ -85,8 +87,8 @@ class FocusNode : public GoalNode<cell_microinjection::FindFocusAction> {
   std::string tip_reason_ = "no image was received";
   std::optional<FocusSearch::Reading> reading_;
   Receipt reading_receipt_;
-  std::string blind_;                     ///< why the newest image is not usable; empty: it is
-  std::vector<unsigned char> last_data_;  ///< of the last image: a frozen camera repeats it
+  std::string blind_;                              ///< why the newest image is not usable; empty: it is
+  Repetition<std::vector<std::uint8_t>> data_{0};  ///< of the images that arrived: noise changes each
 
   Publisher<sensor_msgs::JointState> command_;
   Subscription images_;  ///< while a goal is active

@@ -1,11 +1,13 @@
 #include "nodes/force_sensor_node.h"
 
 #include <filesystem>
+#include <limits>
 
 #include "base/errors.h"
 #include "base/user_data.h"
 #include "nodes/runtime/background_writing.h"
 #include "nodes/runtime/conversions.h"
+#include "nodes/runtime/force_liveness.h"
 #include "nodes/runtime/frames.h"
 #include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/node_parameters.h"
@@ -33,12 +35,18 @@ ForceSensorNode::Parameters ForceSensorNode::Parameters::read(const Bus& bus) {
   reader.number("input_timeout", parameters.input_timeout, Range::positive());
   reader.number("averaging", parameters.averaging, Range::positive());
   reader.text("frame", parameters.frame);
+  reader.boolean("quiet", parameters.quiet);
   reader.number("frame_timeout", parameters.frame_timeout, Range::positive());
   reader.path("file", parameters.file);
   // A simulated sensor is another one in each session; a wrench is calibrated where it is measured.
   if (parameters.file.empty() && parameters.source == "serial") parameters.file = userDataFile("force_sensor.yaml");
   ConfigReader simulated = reader.section("simulated");
   parameters.simulated = ForceSensorConfig::read(simulated);
+  if (parameters.source == "simulated" && !parameters.quiet && parameters.simulated.mayRepeat(parameters.rate)) {
+    reader.error("quiet",
+                 "must be true (sensor/quiet of the session): the noise of the simulated sensor is below the "
+                 "step of its readings, or its sample_rate below rate, so that it repeats readings");
+  }
   // Sections of unused sources may stay in a file; they are read as strictly.
   for (const std::string source : {"serial", "topic"}) {
     if (parameters.source != source && !reader.has(source)) continue;
@@ -60,6 +68,7 @@ ForceSensorNode::ForceSensorNode(Bus& bus)
       cycle_(bus, parameters_.rate),
       source_(makeSource()),
       readout_(source_->range(), parameters_.averaging),
+      readings_(parameters_.quiet ? std::numeric_limits<double>::infinity() : ForceLiveness::kReadings),
       measured_(cycle_.output<geometry_msgs::WrenchStamped>("force_sensor/measured_cf")),
       raw_(cycle_.output<geometry_msgs::WrenchStamped>("force_sensor/raw_cf")) {
   if (!parameters_.file.empty() && source_->size() == 2) {
@@ -145,7 +154,12 @@ std::string ForceSensorNode::act(const cell_microinjection::CalibrateForce::Requ
 
 std::string ForceSensorNode::notReadyReason() const {
   if (source_->overloaded()) return "the sensor is overloaded: reset it first";
-  return source_->saturated() ? "the sensor is saturated" : source_->invalidReason();
+  return source_->saturated() ? "the sensor is saturated" : invalidReason();
+}
+
+std::string ForceSensorNode::invalidReason() const {
+  if (!source_->invalidReason().empty() || !readings_.repeats()) return source_->invalidReason();
+  return "repeats one reading, which its noise must change: it hangs, or it is quiet (sensor/quiet of the session)";
 }
 
 void ForceSensorNode::watchController() {
@@ -186,7 +200,9 @@ void ForceSensorNode::step(const Cycle::Tick& tick) {
   keepCalibration();
   reportOutcome();
   const auto signal = source_->read(tick);
-  if (!source_->invalidReason().empty() || source_->overloaded()) return publishInvalid(tick);
+  // A saturated reading stays.
+  if (signal) readings_.step(signal->values, source_->saturated() ? 0 : 1);
+  if (!invalidReason().empty() || source_->overloaded()) return publishInvalid(tick);
   if (!signal) return;
   if (readout_.averaging() && source_->saturated()) readout_.interrupt("the sensor was saturated");
   if (readout_.averaging() && inUse()) readout_.interrupt("the needle is led in contact");
@@ -214,8 +230,8 @@ void ForceSensorNode::report(diagnostic_updater::DiagnosticStatusWrapper& status
   const std::string unwritten = file_ ? file_->error() : "";
   if (source_->overloaded()) {
     status.summary(DiagnosticStatus::ERROR, "overloaded: " + source_->overloadText() + "; call the service ~reset");
-  } else if (!source_->invalidReason().empty()) {
-    status.summary(DiagnosticStatus::WARN, source_->invalidReason());
+  } else if (!invalidReason().empty()) {
+    status.summary(DiagnosticStatus::WARN, invalidReason());
   } else if (!unwritten.empty()) {
     status.summary(DiagnosticStatus::WARN, unwritten);
   } else {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/background_file.h"
+#include "base/repetition.h"
 #include "nodes/needle/force_sources.h"
 #include "nodes/runtime/cycle.h"
 #include "rig/sensor/force_readout.h"
@@ -29,7 +30,7 @@ namespace microinjection {
 ///      /controller/operating_state, /controller/injection_state: tare and gain stay while the needle is led in contact
 /// Out: /force_sensor/measured_cf (WrenchStamped at the tip in `needle_tip`, tared and calibrated)
 ///      /force_sensor/raw_cf (WrenchStamped in the sensor's frame; a two-axis sensor has no torque)
-///      both with stamp 0 without a valid input, and from an overload to a reset
+///      both with stamp 0 without a valid input, while the sensor repeats one reading, and from an overload to a reset
 /// Services: ~tare, ~reset (std_srvs/Trigger), ~calibrate (CalibrateForce; two-axis sensors). A
 ///      service only starts an average; its outcome is on /diagnostics.
 /// File: tare and gain of a two-axis sensor, written after each change and read at the start
@@ -47,6 +48,7 @@ class ForceSensorNode {
     double rate = 1000;
     double input_timeout = 0.05;
     double averaging = 0.5;
+    bool quiet = false;  ///< its noise is below its step, so that it may repeat a reading
     std::string frame = "force_sensor";
     double frame_timeout = 10;
     std::string file;  ///< of tare and gain; empty: not kept
@@ -64,6 +66,7 @@ class ForceSensorNode {
   geometry_msgs::WrenchStamped atTip(const Eigen::VectorXd& force, const ros::Time& stamp) const;
   void calibrate(const cell_microinjection::CalibrateForce::Request& request,
                  cell_microinjection::CalibrateForce::Response& response);
+  std::string invalidReason() const;
   std::string act(const cell_microinjection::CalibrateForce::Request& request);
   std::string notReadyReason() const;
   bool inUse() const;  ///< the force must not jump now
@@ -78,6 +81,7 @@ class ForceSensorNode {
   Cycle cycle_;
   std::unique_ptr<ForceSource> source_;
   ForceReadout readout_;
+  Repetition<Eigen::VectorXd> readings_;  ///< as the source gives them, exposed to readings
   Output<geometry_msgs::WrenchStamped>& measured_;
   Output<geometry_msgs::WrenchStamped>& raw_;
   std::optional<BackgroundFile> file_;

@@ -1,6 +1,9 @@
 #include "nodes/haptic_bridge_node.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <utility>
 
 #include "nodes/haptic/local_rig.h"
 #include "nodes/link/remote_rig.h"
@@ -10,7 +13,8 @@
 namespace microinjection {
 namespace {
 
-constexpr int kLastHandForces = 5;  // several, since messages can be dropped
+constexpr int kLastHandForces = 5;       // several, since messages can be dropped
+constexpr double kUnchangedSpeed = 0.2;  // s, for which one pose may set a speed
 
 /// A time-out (s) of 0 in the parameters means for ever.
 double orForEver(double timeout) { return timeout > 0 ? timeout : std::numeric_limits<double>::infinity(); }
@@ -32,6 +36,7 @@ const char* const HapticBridgeNode::kHelp =
 HapticBridgeNode::Timeouts HapticBridgeNode::Timeouts::read(ConfigReader reader) {
   Timeouts timeouts;
   reader.number("hand", timeouts.hand, Range::positive());
+  reader.number("hand_unchanged", timeouts.hand_unchanged, Range::nonNegative());
   reader.number("clutch", timeouts.clutch, Range::nonNegative());
   reader.number("operator_present", timeouts.operator_present, Range::nonNegative());
   timeouts.rig.read(reader);
@@ -44,6 +49,7 @@ HapticBridgeNode::Parameters HapticBridgeNode::Parameters::read(const Bus& bus) 
   reader.number("rate", parameters.rate, Range::closed(50, 5000));
   reader.boolean("force_feedback", parameters.force_feedback);
   reader.path("axes_file", parameters.axes_file);
+  reader.boolean("quiet_sensor", parameters.quiet_sensor);
   parameters.timeouts = Timeouts::read(reader.section("timeouts"));
   parameters.model = HapticBridgeConfig::read(reader);
   parameters.link = LinkConfig::read(reader.section("link"));
@@ -64,6 +70,7 @@ HapticBridgeNode::HapticBridgeNode(Bus& bus)
       trace_(cycle_.output<sensor_msgs::TimeReference>("haptic/force_trace")),
       loop_state_(bus, "haptic/loop_state"),
       receiver_(cycle_, hand_force_.publisher, parameters_.force_feedback),
+      hand_poses_(longestUnchanged()),
       axes_(cycle_, parameters_.model.frame.device_axes, parameters_.model.motion.mode == "rate",
             parameters_.axes_file) {
   if (parameters_.model.require_operator) {
@@ -71,15 +78,36 @@ HapticBridgeNode::HapticBridgeNode(Bus& bus)
                                                         orForEver(parameters_.timeouts.operator_present));
   }
   receiver_.monitor(hand_);
+  hand_.onMessage([this](const geometry_msgs::PoseStamped& hand, const ros::Time& now) { watch(hand, now); });
   const HapticBridgeConfig& model = parameters_.model;
   if (parameters_.link.used()) {
     rig_ = std::make_unique<RemoteRig>(cycle_, parameters_.link, model);
   } else {
-    rig_ = std::make_unique<LocalRig>(cycle_, parameters_.timeouts.rig, model.force, trace_);
+    rig_ = std::make_unique<LocalRig>(cycle_, parameters_.timeouts.rig, model.force, parameters_.quiet_sensor, trace_);
   }
   cycle_.diagnostics().add("loop", [this](auto& status) { report(status); });
   bus.onEnd([this] { publishZeroForce(); });
   cycle_.onStep([this](const Cycle::Tick& tick) { step(tick); });
+}
+
+/// A pose that does not change although it sets a speed leads the needle away.
+double HapticBridgeNode::longestUnchanged() const {
+  const double longest = orForEver(parameters_.timeouts.hand_unchanged);
+  const bool sets_speed = parameters_.model.motion.mode == "rate" && std::isfinite(longest);
+  return sets_speed ? std::min(longest, kUnchangedSpeed) : longest;
+}
+
+void HapticBridgeNode::watch(const geometry_msgs::PoseStamped& hand, const ros::Time& now) {
+  const double dt = watched_.isZero() ? 0 : std::max(0.0, secondsBetween(watched_, now));
+  watched_ = now;
+  if (hand.header.stamp.isZero()) return hand_.repeats.clear();
+  const Eigen::Vector3d position = toVector(hand.pose.position);
+  const bool repeats = hand_poses_.step(position, dt);
+  hand_.repeats = repeats ? "one pose, which the tremor of a hand must change" : "";
+  const double step = (position - toVector(last_hand_.pose.position)).norm();
+  const double passed = secondsBetween(last_hand_.header.stamp, hand.header.stamp);
+  hand_leaps_ = hand_leaps_ || step > parameters_.model.engagement.longestStep(passed);
+  last_hand_ = hand;
 }
 
 /// Ends with zero force, for a driver that holds the last one.
@@ -119,6 +147,7 @@ void HapticBridgeNode::step(const Cycle::Tick& tick) {
   if (!hand && operator_present_ && parameters_.timeouts.operator_present <= 0) operator_present_->invalidate();
   if (hand) input.hand = validPosition(hand, hand->header.frame_id, kLargestHandDistance);
   rig_->read(input, tick);
+  input.hand_leaps = std::exchange(hand_leaps_, false);
   input.clutch = clutchPressed(tick.now);
   input.operator_present = operatorPresent(tick.now);
   if (!receiver_.isConnected()) input.no_force_reason = receiver_.reason();

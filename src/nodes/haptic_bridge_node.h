@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 
+#include "base/repetition.h"
 #include "nodes/haptic/axes_service.h"
 #include "nodes/haptic/force_receiver.h"
 #include "nodes/haptic/rig_inputs.h"
@@ -21,7 +22,7 @@ namespace microinjection {
 
 /// Couples a haptic device to the needle. It renders zero force and withdraws its target (stamp 0),
 /// so that the controller holds the needle,
-/// - when hand, needle or force is invalid,
+/// - when hand, needle or force is invalid, or repeats one value (Repetition),
 /// - without a controller, since the needle then does not follow the hand,
 /// - while the node that publishes the hand's position does not subscribe to its force
 ///   (haptic/force_receiver.h),
@@ -46,6 +47,7 @@ class HapticBridgeNode {
  private:
   struct Timeouts {  // s
     double hand = 0.05;
+    double hand_unchanged = 2;  ///< of a pose, see Repetition; 0: for ever
     double clutch = 0;
     double operator_present = 0.2;
     RigTimeouts rig;
@@ -54,6 +56,7 @@ class HapticBridgeNode {
   struct Parameters {
     double rate = 1000;
     bool force_feedback = true;
+    bool quiet_sensor = false;
     std::string axes_file;  ///< that a calibration of the axes writes; empty: of the user's data
     Timeouts timeouts;
     HapticBridgeConfig model;
@@ -62,6 +65,8 @@ class HapticBridgeNode {
   };
 
   void step(const Cycle::Tick& tick);
+  double longestUnchanged() const;
+  void watch(const geometry_msgs::PoseStamped& hand, const ros::Time& now);
   void takeAxes();
   bool clutchPressed(const ros::Time& now) const;
   bool operatorPresent(const ros::Time& now) const;
@@ -80,6 +85,10 @@ class HapticBridgeNode {
   std::unique_ptr<RigSide> rig_;
   LoopStatePublisher loop_state_;
   ForceReceiver receiver_;
+  Repetition<Eigen::Vector3d> hand_poses_;  ///< m, exposed to s
+  ros::Time watched_;                       ///< the last of them
+  geometry_msgs::PoseStamped last_hand_;    ///< valid, of any device
+  bool hand_leaps_ = false;                 ///< since the last step
   AxesService axes_;
   std::string hand_frame_;       ///< of the last hand
   HapticBridge::Output output_;  ///< of the last step, for the diagnostics

@@ -14,6 +14,8 @@ namespace microinjection {
 namespace {
 
 constexpr char kControllerCommandTopic[] = "controller/state_command";
+constexpr double kNeedleRests = 0.5e-6;  ///< m beyond the rig's resolution, within which a set-point is no motion
+constexpr double kNeedleStands = 0.2;    ///< s beyond the rig's times, for which its pose may stay in a motion
 
 /// Commands that stop or withdraw the needle are executed with any stamp.
 bool stopsOrWithdraws(const std::string& command) {
@@ -41,6 +43,7 @@ InjectionControllerNode::Parameters InjectionControllerNode::Parameters::read(co
   reader.number("rate", parameters.rate, Range::closed(50, 5000));
   reader.number("input_timeout", parameters.input_timeout, Range::positive());
   reader.choice("force_source", parameters.force_source, {"predicted", "measured"});
+  reader.boolean("quiet_sensor", parameters.quiet_sensor);
   reader.boolean("auto_enable", parameters.auto_enable);
   reader.boolean("injector", parameters.injector);
   parameters.model = InjectionControllerConfig::read(reader);
@@ -59,12 +62,18 @@ InjectionControllerNode::InjectionControllerNode(Bus& bus)
                                                         parameters_.input_timeout)),
       setpoint_(cycle_.output<geometry_msgs::PoseStamped>("needle/servo_cp")),
       injection_(cycle_.output<cell_microinjection::InjectionStatus>("controller/injection_state", true)),
+      force_lives_(cycle_, force_,
+                   parameters_.force_source == "predicted" ? ForceLiveness::Source::kModel
+                                                           : sensorThatIs(parameters_.quiet_sensor)),
+      needle_poses_(1),
       rig_(bus),
-      witnesses_(bus, parameters_.force_source, parameters_.input_timeout),
+      witnesses_(cycle_, parameters_.force_source, parameters_.input_timeout, parameters_.quiet_sensor),
       loop_state_(bus, "controller/loop_state"),
       action_(bus, model_, parameters_.model.goal),
       repeated_(bus, kControllerCommandTopic),
       log_(bus) {
+  needle_.onMessage(
+      [this](const geometry_msgs::PoseStamped& needle, const ros::Time& now) { watchNeedle(needle, now); });
   if (parameters_.model.mode == "manual") {
     target_ =
         &cycle_.input<geometry_msgs::PoseStamped>("teleop/servo_cp", InputPhase::kDrives, parameters_.input_timeout);
@@ -118,6 +127,8 @@ void InjectionControllerNode::execute(const std::string& command) {
   logged_notice_ = model_.notice();
   log_.addResult("state command " + command, refusal);
   if (!refusal.empty()) return;
+  needle_poses_.reset();  // the set-point may start anew at the needle
+  needle_.repeats.clear();
   ROS_INFO_STREAM("state command " << command << ": " << toText(model_.state()));
   if (ran && !model_.running()) log_.addOverride("the injection", "by " + command);
   if (moves(command)) busy_.accept(static_cast<std::int64_t>(cycle_.bus().now().toNSec()));
@@ -128,6 +139,8 @@ void InjectionControllerNode::adaptTo(const cell_microinjection::ManipulatorAbil
   if (!(rig.latency >= 0 && rig.command_interval >= 0))
     negative << "latency = " << rig.latency << " s, command_interval = " << rig.command_interval
              << " s, allowed [0, inf)";
+  needle_patience_ = kNeedleStands + rig.latency + rig.command_interval + rig.reading_interval;
+  needle_step_ = rig.resolution;
   const double before = model_.speedLimit();
   const std::string refusal =
       negative.str().empty() ? model_.adaptTo(rig.speed, rig.latency + rig.command_interval) : negative.str();
@@ -155,6 +168,26 @@ std::optional<ExpectedPuncture> InjectionControllerNode::expectedPuncture(const 
   return std::abs(age) <= parameters_.model.expectation.timeout ? expected_ : std::nullopt;
 }
 
+/// A rig that was commanded to move, and has not for this long, does not read its position; or it is stuck.
+void InjectionControllerNode::watchNeedle(const geometry_msgs::PoseStamped& needle, const ros::Time& now) {
+  const double dt = watched_.isZero() ? 0 : std::max(0.0, secondsBetween(watched_, now));
+  watched_ = now;
+  if (needle.header.stamp.isZero()) needle_poses_.reset();
+  if (needle_poses_.changes(toVector(needle.pose.position))) setpoint_then_ = commanded_;
+  if (!commanded_) setpoint_then_.reset();
+  if (!setpoint_then_) setpoint_then_ = commanded_;
+  const bool is_sent = commanded_ && (*commanded_ - *setpoint_then_).norm() > kNeedleRests + needle_step_;
+  if (is_sent) needle_poses_.expose(dt / needle_patience_);
+  needle_.repeats = needle_poses_.repeats() ? "one pose, although it was sent elsewhere" : "";
+}
+
+/// By the force that it acts on, a cell none of whose membranes has failed.
+bool InjectionControllerNode::feelsContact() const {
+  const bool in_contact =
+      model_.injection() == InjectionState::kContact || model_.injection() == InjectionState::kIndent;
+  return in_contact && model_.punctures() == 0 && model_.monitor().touched();
+}
+
 void InjectionControllerNode::step(const Cycle::Tick& tick) {
   const auto* target = target_ ? target_->get(tick.now) : nullptr;
   const auto needle = validPose(needle_.get(tick.now));
@@ -163,17 +196,23 @@ void InjectionControllerNode::step(const Cycle::Tick& tick) {
   if (injector_) input.injector = injector_->report(tick.now);
   input.rig_hold = rig_.takeHold();
   input.expected = expectedPuncture(tick.now);
+  const bool acts_on_sensor = parameters_.force_source == "measured";
+  force_lives_.step(needle ? std::optional<Eigen::Vector3d>(needle->translation()) : std::nullopt,
+                    acts_on_sensor && feelsContact());
   if (needle) {
     input.needle = needle->translation();
     input.axis = needle->linear().col(2);
     input.force = validForce(force_.get(tick.now), needle->linear());
     witnesses_.fill(*needle, tick.now, input);
   }
-  if (const auto setpoint = model_.step(input, tick.dt)) {
+  const auto setpoint = model_.step(input, tick.dt);
+  if (setpoint) {
     Eigen::Isometry3d pose = needle ? *needle : Eigen::Isometry3d::Identity();
     pose.translation() = *setpoint;
     setpoint_.publish(toPose(pose, target && model_.followsTarget() ? target->header.stamp : tick.now, kWorldFrame));
   }
+  const bool is_commanded = model_.state() == OperatingState::kEnabled && input.rig_hold.empty();
+  commanded_ = is_commanded ? setpoint : std::nullopt;
   if (injector_) injector_->setPulse(model_.pulse(), tick.now);
   action_.step(tick.now);
   logNotice();
@@ -236,6 +275,8 @@ void InjectionControllerNode::report(diagnostic_updater::DiagnosticStatusWrapper
                                            : diagnostic_msgs::DiagnosticStatus::WARN,
                  text + (updates.empty() ? "" : "; ") + updates);
   log_.addCounts(status);
+  if (const std::string word = model_.disagreement(); !word.empty())
+    status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, word);
   status.add("state", toText(model_.state()));
   status.add("speed limit (m/s)", model_.speedLimit());
 }

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "base/busy_report.h"
+#include "base/repetition.h"
 #include "cell_microinjection/CellEstimate.h"
 #include "cell_microinjection/InjectionStatus.h"
 #include "cell_microinjection/ManipulatorAbilities.h"
@@ -21,6 +22,7 @@
 #include "nodes/runtime/command_log.h"
 #include "nodes/runtime/command_source.h"
 #include "nodes/runtime/cycle.h"
+#include "nodes/runtime/force_liveness.h"
 #include "nodes/runtime/loop_state.h"
 #include "operation/control/injection_controller.h"
 
@@ -32,7 +34,7 @@ namespace microinjection {
 ///      (PoseStamped), /cell/predicted_cf or /force_sensor/measured_cf (WrenchStamped),
 ///      /controller/state_command (StringStamped), /needle/abilities (ManipulatorAbilities, to
 ///      drive a slow rig slowly), /needle/operating_state and /needle/loop_state (does the rig
-///      follow?), the other force, /cell/parameters and /cell/state (see Witnesses), /injector/state, /cell/estimate
+///      follow?), the other force, /cell/parameters and /cell/contact (see Witnesses), /injector/state, /cell/estimate
 ///      (CellEstimate, the expected puncture); the action Inject on /controller/inject
 /// Out: /needle/servo_cp (PoseStamped, `world`), /controller/operating_state (OperatingState,
 ///      latched, on change and after each state_command), /controller/injection_state
@@ -51,6 +53,7 @@ class InjectionControllerNode {
     double rate = 1000;
     double input_timeout = 0.05;
     std::string force_source = "predicted";
+    bool quiet_sensor = false;  ///< of the session, sensor/quiet
     bool auto_enable = false;
     bool injector = true;
     InjectionControllerConfig model;
@@ -62,6 +65,8 @@ class InjectionControllerNode {
   void execute(const std::string& command);
   void adaptTo(const cell_microinjection::ManipulatorAbilities& rig);
   void receiveEstimate(const cell_microinjection::CellEstimate& message);
+  void watchNeedle(const geometry_msgs::PoseStamped& needle, const ros::Time& now);
+  bool feelsContact() const;
   std::optional<ExpectedPuncture> expectedPuncture(const ros::Time& now) const;
   void step(const Cycle::Tick& tick);
   void logNotice();
@@ -78,6 +83,13 @@ class InjectionControllerNode {
   Output<geometry_msgs::PoseStamped>& setpoint_;
   Output<cell_microinjection::InjectionStatus>& injection_;
   std::unique_ptr<InjectorLink> injector_;  ///< null without an injector
+  ForceLiveness force_lives_;
+  Repetition<Eigen::Vector3d> needle_poses_;      ///< m, exposed to s over needle_patience_
+  ros::Time watched_;                             ///< the last of them
+  std::optional<Eigen::Vector3d> setpoint_then_;  ///< m, when it changed; empty: the rig was not commanded
+  std::optional<Eigen::Vector3d> commanded_;      ///< m, the last set-point; empty: the rig is not commanded
+  double needle_patience_ = 0.2;                  ///< s
+  double needle_step_ = 0;                        ///< m, the rig's resolution
   RigWatch rig_;
   Witnesses witnesses_;
   LoopStatePublisher loop_state_;

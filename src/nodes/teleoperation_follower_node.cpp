@@ -24,6 +24,7 @@ TeleoperationFollowerNode::Parameters TeleoperationFollowerNode::Parameters::rea
   ConfigReader timeouts = reader.section("timeouts");
   parameters.timeouts.read(timeouts);
   parameters.force = ForceSourceConfig::read(reader);
+  reader.boolean("quiet_sensor", parameters.quiet_sensor);
   parameters.link = LinkConfig::read(reader.section("link"));
   reader.finish();
   return parameters;
@@ -33,7 +34,7 @@ TeleoperationFollowerNode::TeleoperationFollowerNode(Bus& bus)
     : parameters_(Parameters::read(bus)),
       model_(parameters_.link),
       cycle_(bus, parameters_.rate),
-      rig_(cycle_, parameters_.timeouts, parameters_.force),
+      rig_(cycle_, parameters_.timeouts, parameters_.force, parameters_.quiet_sensor),
       sent_(cycle_.output<cell_microinjection::LinkPacket>("link/rig/sent")),
       target_(cycle_.output<geometry_msgs::PoseStamped>("teleop/servo_cp")),
       loop_state_(bus, "link/rig/loop_state") {

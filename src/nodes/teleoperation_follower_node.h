@@ -31,6 +31,7 @@ class TeleoperationFollowerNode {
     double rate = 1000;
     RigTimeouts timeouts;
     ForceSourceConfig force;
+    bool quiet_sensor = false;
     LinkConfig link;
     static Parameters read(const Bus& bus);
   };

@@ -79,14 +79,14 @@ VisionNode::VisionNode(Bus& bus)
       Serving::kOwnThread);
 }
 
-std::string VisionNode::refusalOf(const sensor_msgs::Image& message, const ros::Time& now) const {
+std::string VisionNode::refusalOf(const sensor_msgs::Image& message, const ros::Time& now) {
   const ros::Time& stamp = message.header.stamp;
   if (const std::string defect = imageDefect(message); !defect.empty()) return defect;
   if (isAhead(stamp, now)) return "its stamp is ahead of now";
   if (!stamp_.isZero() && stamp == stamp_) return "its stamp is that of the last one: the driver must stamp each image";
   const double age = secondsBetween(stamp, now);
   if (age > parameters_.vision.image_timeout) return "it is " + std::to_string(age) + " s old";
-  if (message.data == last_data_) return "the camera repeats its last image";
+  if (data_.step(message.data, 1)) return "the camera repeats its last image";
   // A clock that was set back by more than an image's age begins a new series.
   if (!stamp_.isZero() && stamp <= stamp_ && secondsBetween(stamp, stamp_) <= parameters_.vision.image_timeout)
     return "it is not newer than the last one";
@@ -110,7 +110,6 @@ void VisionNode::onImage(const sensor_msgs::Image& message) {
   refuse("");
   tracker_.next(frame);
   stamp_ = message.header.stamp;
-  last_data_ = message.data;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     image_size_ = {frame.width(), frame.height()};

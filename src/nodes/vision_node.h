@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/repetition.h"
 #include "nodes/bus/diagnostics.h"
 #include "nodes/imaging/served_cell.h"
 #include "vision/measurement/cell_measurement.h"
@@ -43,7 +44,7 @@ class VisionNode {
   };
 
   void onImage(const sensor_msgs::Image& message);
-  std::string refusalOf(const sensor_msgs::Image& message, const ros::Time& now) const;
+  std::string refusalOf(const sensor_msgs::Image& message, const ros::Time& now);
   double processingTime() const;  ///< s of processor time; in virtual time s of that, since no machine may change it
   std::string refusal() const;    ///< of the last image; empty: accepted
   Eigen::Vector2i imageSize() const;  ///< px, of the last accepted image; 0: none
@@ -63,9 +64,9 @@ class VisionNode {
   Publisher<cell_microinjection::VisionState> state_;
   Publisher<sensor_msgs::Image> overlay_;
   Subscription images_;
-  std::vector<std::uint8_t> last_data_;  ///< of the last image: noise changes each one of a camera that lives
-  ros::Time stamp_;                      ///< of the last accepted image
-  mutable std::mutex mutex_;             ///< of what follows, which the service reads
+  Repetition<std::vector<std::uint8_t>> data_{0};  ///< of the images that arrived: noise changes each
+  ros::Time stamp_;                                ///< of the last accepted image
+  mutable std::mutex mutex_;                       ///< of what follows, which the service reads
   CellReadings readings_;
   Eigen::Vector2i image_size_ = Eigen::Vector2i::Zero();  ///< px, of the last accepted image
   bool pressed_ = false;                                  ///< by the needle, in the newest image

@@ -41,6 +41,7 @@ struct Session {
   struct Sensor {
     std::string source = "simulated";                        ///< simulated, serial, topic, none
     std::array<double, 6> mounting = {0, 0, 0.04, 0, 0, 0};  ///< in needle_tip: x y z (m) yaw pitch roll (rad)
+    bool quiet = false;                                      ///< its noise is below its step
   };
   /// Of the device's driver. auto: as the file of the device says; of `external`, see there.
   struct Topics {

@@ -33,7 +33,8 @@ const Keys kLengths = {
     {kController,
      {"speed_limit", "jump_limit", "lag_limit", "tracking_limit", "needle_speed_limit", "depth_limit",
       "motion/approach_speed", "motion/travel_limit", "motion/indent_speed", "motion/stab_speed",
-      "motion/stab_acceleration", "motion/overshoot", "motion/retract_speed", "goal/depth", "goal/margin"}},
+      "motion/stab_acceleration", "motion/overshoot", "motion/retract_speed", "witness/depth", "witness/gap",
+      "goal/depth", "goal/margin"}},
     {"display", {"colour_range", "force_scale", "injection_pipette/length", "holding_pipette/length"}},
     {kMicroscope, {"camera/pixel_size", "focus/range", "focus/speed"}},
     {"haptic_device", {"handle_offset", "arrow_scale"}}};
@@ -108,9 +109,9 @@ class Fit {
     scaleKeys(kPerLength, 1 / length);
     scaleKeys(kForces, force);
     scaleKeys(kPerForce, 1 / force);
-    const std::string threshold =
-        "detection/contact_force";  // no smaller: a sensor's noise does not shrink with the cell
-    set(kController, threshold, roundedParameter(read(kController, threshold) * std::max(1.0, force)));
+    // No smaller: a sensor's noise does not shrink with the cell.
+    for (const char* threshold : {"detection/contact_force", "witness/force"})
+      set(kController, threshold, roundedParameter(read(kController, threshold) * std::max(1.0, force)));
   }
 
   void scaleKeys(const Keys& keys, double factor) {

@@ -112,6 +112,7 @@ class Planner {
     if (session_.sensor.source == "none") return;
     NodePlan& node = addConfigured("force_sensor");
     setText(node, "source", session_.sensor.source);
+    setFlag(node, "quiet", session_.sensor.quiet);
     if (!session_.hidden.empty()) node.remaps["/cell/predicted_cf"] = "/true_cell/predicted_cf";
     plan_.frames.push_back({"force_sensor_frame", "needle_tip", "force_sensor", session_.sensor.mounting});
   }
@@ -130,7 +131,7 @@ class Planner {
   void addCells() {
     if (!session_.hidden.empty()) {
       addCell("true_cell", session_.hidden, "auto");
-      for (const char* topic : {"predicted_cf", "state", "set_parameters"})
+      for (const char* topic : {"predicted_cf", "contact", "state", "set_parameters", "parameters"})
         plan_.nodes.back().remaps[std::string("/cell/") + topic] = std::string("/true_cell/") + topic;
       plan_.files.push_back(session_.hidden);
     }
@@ -165,6 +166,7 @@ class Planner {
     NodePlan& node = addConfigured("injection_controller");
     setText(node, "mode", session_.injection.mode);
     setText(node, "force_source", session_.force.controller);
+    setFlag(node, "quiet_sensor", session_.sensor.quiet);
     setFlag(node, "auto_enable", session_.injection.auto_enable);
     setFlag(node, "start_when_enabled", session_.injection.start_when_enabled);
     setParameter(node.parameters, "goal/layers", integerValue(session_.injection.layers));
@@ -177,6 +179,8 @@ class Planner {
     const bool has_link = link.scheme != "none";
     NodePlan& bridge = addConfigured("haptic_bridge");
     setText(bridge, "force_source", session_.force.hand);
+    setFlag(bridge, "quiet_sensor", session_.sensor.quiet);
+    if (session_.hand.isOperator()) setParameter(bridge.parameters, "timeouts/hand_unchanged", integerValue(0));
     if (has_link) mergeParameters(bridge.parameters, load(package("config/link.yaml")));
     setText(bridge, "link/scheme", link.scheme);
     if (has_link && !link.emulated) bridge.remaps["/link/hand/received"] = "/link/rig/sent";
@@ -190,6 +194,7 @@ class Planner {
     NodePlan& follower = add("teleoperation_follower", "teleoperation_follower");
     mergeParameters(follower.parameters, load(package("config/link.yaml")));
     setText(follower, "force_source", session_.force.hand);
+    setFlag(follower, "quiet_sensor", session_.sensor.quiet);
     if (!link.emulated) {
       follower.remaps["/link/rig/received"] = "/link/hand/sent";
       return;
@@ -334,7 +339,9 @@ class Planner {
     }
     for (std::size_t i = first; i < plan_.nodes.size(); ++i) {
       plan_.nodes[i].remaps = imageRemaps();
-      if (!session_.hidden.empty()) plan_.nodes[i].remaps["/cell/state"] = "/true_cell/state";
+      if (session_.hidden.empty()) continue;
+      for (const char* topic : {"contact", "state"})
+        plan_.nodes[i].remaps[std::string("/cell/") + topic] = std::string("/true_cell/") + topic;
     }
   }
 

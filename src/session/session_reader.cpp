@@ -107,6 +107,7 @@ void readSessionKeys(ConfigReader& reader, const std::string& folder, SessionDra
   LayerSection sensor = section.section("sensor");
   sensor.choice("source", session.sensor.source, choices.sensors);
   sensor.numbers("mounting", session.sensor.mounting);
+  sensor.flag("quiet", session.sensor.quiet);
   section.choice("injector", session.injector, choices.injectors);
   readHand(section.section("hand"), session.hand, choices);
   LayerSection force = section.section("force");

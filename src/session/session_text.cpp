@@ -45,7 +45,11 @@ std::string handText(const Session::Hand& hand) {
 std::string sensorText(const Session::Sensor& sensor) {
   std::vector<std::string> mounting;
   for (const double value : sensor.mounting) mounting.push_back(numberText(value));
-  return "\n" + Group(2).text("source", sensor.source).raw("mounting", " [" + join(mounting, ", ") + "]\n").lines();
+  return "\n" + Group(2)
+                    .text("source", sensor.source)
+                    .raw("mounting", " [" + join(mounting, ", ") + "]\n")
+                    .flag("quiet", sensor.quiet)
+                    .lines();
 }
 
 }  // namespace

@@ -120,6 +120,8 @@ TEST_F(SessionFitTest, KeysAreThoseOfTheFiles) {
       {"display", {"colour_range", "force_scale", "injection_pipette/length", "holding_pipette/length", "enlargement"}},
       {"microscope", {"camera/pixel_size", "focus/range", "focus/speed"}},
       {"haptic_device", {"handle_offset", "arrow_scale", "hand_scale", "enlargement"}}};
+  for (const std::string key : {"depth", "force", "gap"})
+    EXPECT_TRUE(has(parameters, "injection_controller/witness/" + key)) << key;
   for (const auto& [node, paths] : keys) {
     const bool of_hand = node == "haptic_device";
     YAML::Node file = loadYamlMap(kPackage + "/config/" + (of_hand ? "haptic/marker" : node) + ".yaml");

@@ -88,6 +88,10 @@ TEST_F(SessionPlanTest, AHiddenCellIsAtTheNeedleAndTheBelievedOneIsServed) {
   EXPECT_EQ(session.node("force_sensor")->remaps.at("/cell/predicted_cf"), "/true_cell/predicted_cf");
   EXPECT_EQ(session.node("microscope")->remaps.at("/cell/state"), "/true_cell/state");
   EXPECT_EQ(session.node("vision")->remaps.at("/cell/state"), "/true_cell/state");
+  EXPECT_EQ(session.node("touch")->remaps.at("/cell/contact"), "/true_cell/contact");
+  // Whatever the true cell says, the believed one says under its own name.
+  for (const char* topic : {"predicted_cf", "contact", "state", "set_parameters", "parameters"})
+    EXPECT_EQ(session.node("true_cell")->remaps.at(std::string("/cell/") + topic), std::string("/true_cell/") + topic);
   EXPECT_TRUE(session.node("injection_controller")->remaps.empty());
   EXPECT_EQ(at(session, "cell_estimator", "serve"),
             at(plan({"twin:=true", "sensor.source:=serial"}), "cell_estimator", "serve"));

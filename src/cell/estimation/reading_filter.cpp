@@ -7,7 +7,6 @@ namespace microinjection {
 namespace {
 
 constexpr double kFarOff = 6;    // of a reading from its neighbours, over the noise
-constexpr int kFrozen = 20;      // equal readings: a sensor that hangs
 constexpr double kMany = 0.3;    // share of outliers among the newest readings
 constexpr double kShare = 0.02;  // of the newest reading in that share
 
@@ -21,10 +20,8 @@ double median(std::array<double, size>& values, std::size_t count) {
 }  // namespace
 
 ReadingFilter::Verdict ReadingFilter::judge(double time, double force, double noise) {
-  const Reading last = window_[(received_ + kWindow - 1) % kWindow];
-  repeated_ = received_ > 0 && force == last.force ? repeated_ + 1 : 0;
   window_[received_++ % kWindow] = {time, force};
-  if (repeated_ >= kFrozen) return Verdict::kFrozen;
+  if (repetition_.step(force, 1)) return Verdict::kFrozen;
   if (received_ < kWindow) return Verdict::kUnknown;
   const bool outlier = isOutlier(noise);
   outliers_ += kShare * ((outlier ? 1 : 0) - outliers_);
@@ -51,7 +48,7 @@ bool ReadingFilter::isOutlier(double noise) const {
 }
 
 std::string ReadingFilter::complaint() const {
-  if (repeated_ >= kFrozen) return "the force sensor repeats the same reading";
+  if (repetition_.repeats()) return "the force sensor repeats the same reading";
   if (outliers_ > kMany) return "the readings of the force sensor jump";
   return "";
 }

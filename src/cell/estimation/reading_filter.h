@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <string>
 
+#include "base/repetition.h"
+
 namespace microinjection {
 
 /// Which readings of a force sensor can be trusted: not a single one far off, none of a sensor that
@@ -22,13 +24,14 @@ class ReadingFilter {
   bool isOutlier(double noise) const;
 
   static constexpr std::size_t kWindow = 7;
+  static constexpr double kFrozen = 19;  ///< readings that repeat one: a sensor that hangs
   struct Reading {
     double time = 0, force = 0;
   };
   std::array<Reading, kWindow> window_{};  ///< the newest, in a ring
   std::size_t received_ = 0;
-  int repeated_ = 0;     ///< equal readings in a row
-  double outliers_ = 0;  ///< share among the newest readings
+  Repetition<double> repetition_{kFrozen};  ///< N, exposed to readings
+  double outliers_ = 0;                     ///< share among the newest readings
 };
 
 }  // namespace microinjection

@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "base/errors.h"
-#include "cell_microinjection/CellState.h"
+#include "cell_microinjection/CellContact.h"
 #include "cell_microinjection/InjectionStatus.h"
 #include "cell_microinjection/StringStamped.h"
 #include "nodes/executive/session_nodes.h"
@@ -23,7 +23,7 @@ class SessionWatch {
         "operator/phase", 10, [this](const auto& delivery) { hand_done_ = delivery.message->string == "done"; });
     injection_ = bus.subscribe<cell_microinjection::InjectionStatus>(
         "controller/injection_state", 10, [this](const auto& delivery) { status_ = *delivery.message; });
-    cell_ = bus.subscribe<cell_microinjection::CellState>("cell/state", 1, [this](const auto& delivery) {
+    cell_ = bus.subscribe<cell_microinjection::CellContact>("cell/contact", 1, [this](const auto& delivery) {
       in_cell_ = delivery.message->in_contact || delivery.message->inside;
     });
   }

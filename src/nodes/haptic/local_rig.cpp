@@ -5,9 +5,9 @@
 
 namespace microinjection {
 
-LocalRig::LocalRig(Cycle& cycle, const RigTimeouts& timeouts, const ForceSourceConfig& source,
+LocalRig::LocalRig(Cycle& cycle, const RigTimeouts& timeouts, const ForceSourceConfig& source, bool quiet_sensor,
                    Output<sensor_msgs::TimeReference>& trace)
-    : inputs_(cycle, timeouts, source),
+    : inputs_(cycle, timeouts, source, quiet_sensor),
       target_(cycle.output<geometry_msgs::PoseStamped>("teleop/servo_cp")),
       trace_(trace) {}
 

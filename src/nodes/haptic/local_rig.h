@@ -16,7 +16,7 @@ namespace microinjection {
 /// Out: /teleop/servo_cp (PoseStamped, tip in `world`); `trace`: see nodes/runtime/latency_meter.h
 class LocalRig : public RigSide {
  public:
-  LocalRig(Cycle& cycle, const RigTimeouts& timeouts, const ForceSourceConfig& source,
+  LocalRig(Cycle& cycle, const RigTimeouts& timeouts, const ForceSourceConfig& source, bool quiet_sensor,
            Output<sensor_msgs::TimeReference>& trace);
 
   void read(HapticBridge::Input& input, const Cycle::Tick& tick) override;

@@ -11,14 +11,16 @@ void RigTimeouts::read(ConfigReader& timeouts) {
   timeouts.number("controller", controller, Range::nonNegative());
 }
 
-RigInputs::RigInputs(Cycle& cycle, const RigTimeouts& timeouts, const ForceSourceConfig& source)
+RigInputs::RigInputs(Cycle& cycle, const RigTimeouts& timeouts, const ForceSourceConfig& source, bool quiet_sensor)
     : needle_(cycle.input<geometry_msgs::PoseStamped>("needle/measured_cp", InputPhase::kSampled, timeouts.needle)) {
   using geometry_msgs::WrenchStamped;
   if (source.usesPredicted()) {
     predicted_ = &cycle.input<WrenchStamped>("cell/predicted_cf", InputPhase::kSampled, timeouts.predicted);
+    predicted_lives_.emplace(cycle, *predicted_, ForceLiveness::Source::kModel);
   }
   if (source.usesMeasured()) {
     measured_ = &cycle.input<WrenchStamped>("force_sensor/measured_cf", InputPhase::kSampled, timeouts.measured);
+    measured_lives_.emplace(cycle, *measured_, sensorThatIs(quiet_sensor));
   }
   if (timeouts.controller > 0) {
     controller_ = &cycle.input<cell_microinjection::InjectionStatus>("controller/injection_state", InputPhase::kSampled,
@@ -26,10 +28,14 @@ RigInputs::RigInputs(Cycle& cycle, const RigTimeouts& timeouts, const ForceSourc
   }
 }
 
-RigInputs::Reading RigInputs::read(const ros::Time& now) const {
+RigInputs::Reading RigInputs::read(const ros::Time& now) {
   Reading reading;
   reading.controller = !controller_ || controller_->get(now);
-  if (const auto needle = validPose(needle_.get(now))) {
+  const auto needle = validPose(needle_.get(now));
+  const auto tip = needle ? std::optional<Eigen::Vector3d>(needle->translation()) : std::nullopt;
+  if (predicted_lives_) predicted_lives_->step(tip);
+  if (measured_lives_) measured_lives_->step(tip);
+  if (needle) {
     reading.needle = needle->translation();
     reading.force.predicted = validForce(predicted_ ? predicted_->get(now) : nullptr, needle->linear());
     reading.force.measured = validForce(measured_ ? measured_->get(now) : nullptr, needle->linear());

@@ -9,6 +9,7 @@
 #include "base/config_reader.h"
 #include "cell_microinjection/InjectionStatus.h"
 #include "nodes/runtime/cycle.h"
+#include "nodes/runtime/force_liveness.h"
 #include "operation/teleoperation/force_source.h"
 
 namespace microinjection {
@@ -30,14 +31,15 @@ struct RigTimeouts {
 ///     (WrenchStamped), /controller/injection_state (InjectionStatus, to detect the controller)
 class RigInputs {
  public:
-  RigInputs(Cycle& cycle, const RigTimeouts& timeouts, const ForceSourceConfig& source);
+  /// `quiet_sensor`: of the session, sensor/quiet.
+  RigInputs(Cycle& cycle, const RigTimeouts& timeouts, const ForceSourceConfig& source, bool quiet_sensor);
 
   struct Reading {
     bool controller = true;                 ///< it publishes, or is not checked
     std::optional<Eigen::Vector3d> needle;  ///< m, the tip in `world`; empty: invalid or stale
     TipForces force;                        ///< empty without a needle
   };
-  Reading read(const ros::Time& now) const;
+  Reading read(const ros::Time& now);
   /// Stamp of the force that Reading has; of the predicted one where both are used. @pre it has one
   ros::Time forceStamp(const ros::Time& now) const;
 
@@ -46,6 +48,7 @@ class RigInputs {
   Input<geometry_msgs::WrenchStamped>* predicted_ = nullptr;           ///< null: not used
   Input<geometry_msgs::WrenchStamped>* measured_ = nullptr;            ///< null: not used
   Input<cell_microinjection::InjectionStatus>* controller_ = nullptr;  ///< null: not checked
+  std::optional<ForceLiveness> predicted_lives_, measured_lives_;
 };
 
 }  // namespace microinjection

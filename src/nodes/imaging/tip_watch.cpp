@@ -41,9 +41,9 @@ TipWatch::TipWatch(Bus& bus, double timeout) : bus_(bus), timeout_(timeout) {
       subscribeGuarded<OperatingState>(
           bus, "/controller/operating_state", kQueue,
           [this](const OperatingState& message, const std::string&) { controller_state_ = message; }),
-      subscribeGuarded<cell_microinjection::CellState>(
-          bus, "/cell/state", kQueue,
-          [this](const cell_microinjection::CellState& message, const std::string&) {
+      subscribeGuarded<cell_microinjection::CellContact>(
+          bus, "/cell/contact", kQueue,
+          [this](const cell_microinjection::CellContact& message, const std::string&) {
             touches_ = message.in_contact || message.inside;
             touch_heard_ = {awake_.seconds(), bus_.steady()};
           }),
@@ -62,7 +62,7 @@ std::string TipWatch::cellInTheWay() const {
            (awake_.seconds() - heard.awake > kSilent || secondsBetween(heard.time, bus_.steady()) > kStateForgotten);
   };
   if (silent(injection_heard_)) return "/controller/injection_state is silent: the needle may be in the cell";
-  if (silent(touch_heard_)) return "/cell/state is silent: the needle may touch the cell";
+  if (silent(touch_heard_)) return "/cell/contact is silent: the needle may touch the cell";
   if (injects_) return "the needle is at the cell or in it, by the controller: withdraw it";
   if (touches_) return "the needle touches the cell, by cell_simulator: withdraw it";
   return beside_;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cell_microinjection/CellState.h>
+#include <cell_microinjection/CellContact.h>
 #include <cell_microinjection/InjectionStatus.h>
 #include <cell_microinjection/OperatingState.h>
 #include <cell_microinjection/VisionState.h>

@@ -108,11 +108,14 @@ void CycleDiagnostics::reportInputs(DiagnosticStatusWrapper& status) {
   }
   for (const InputPort* input : inputs_) {
     status.add("age of " + input->topic + " (s)", input->age(now_));
-    if (input->received.isZero() && std::isinf(input->timeout)) continue;  // a command may never arrive
+    const bool may_be_silent = input->optional || std::isinf(input->timeout);  // a command may never arrive
+    if (input->received.isZero() && may_be_silent) continue;
     const std::string rivals = input->rivals(now_);
     if (!rivals.empty()) {
       status.mergeSummary(DiagnosticStatus::ERROR,
                           input->topic + " is sent by two nodes, " + rivals + ": none counts until one has stopped");
+    } else if (!input->repeats.empty()) {
+      status.mergeSummary(DiagnosticStatus::ERROR, input->topic + " repeats " + input->repeats);
     } else if (!input->fresh(now_)) {
       status.mergeSummary(DiagnosticStatus::WARN, input->topic + (input->valid() ? " is stale" : " has nothing valid"));
     }

@@ -37,9 +37,9 @@ class InputPort {
   /// Age of the last message (s of ROS time), from the older of its stamp and its arrival; infinite
   /// before the first.
   double age(const ros::Time& now) const { return received.isZero() ? INFINITY : secondsBetween(received, now); }
-  /// Whether the last message is valid, not older than `timeout`, and from the only sender.
+  /// Whether the last message is valid, not older than `timeout`, from the only sender, and of a source that lives.
   bool fresh(const ros::Time& now) const {
-    return !disconnected && valid() && age(now) >= 0 && age(now) <= timeout && rivals(now).empty();
+    return !disconnected && repeats.empty() && valid() && age(now) >= 0 && age(now) <= timeout && rivals(now).empty();
   }
   /// The two nodes that both send now, of which nobody can know which one is right; empty: one does.
   std::string rivals(const ros::Time& now) const { return one_sender ? senders.rivals(now) : ""; }
@@ -52,6 +52,8 @@ class InputPort {
   SoleSender senders;
   bool one_sender = true;     ///< else several nodes may send: commands, whose authority the node checks itself
   bool disconnected = false;  ///< no message is fresh; see Cycle
+  bool optional = false;      ///< nobody need send it: before the first message nothing is reported
+  std::string repeats;        ///< what its source repeats, see Repetition: no message is fresh; empty: it lives
   /// kAny: handlers also receive messages stamped ahead, which are never fresh. kCommand: live, a
   /// message without a stamp gets that of its arrival, unless its publisher latches.
   StampRule stamp_rule = StampRule::kTimely;

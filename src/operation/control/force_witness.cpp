@@ -15,6 +15,7 @@ constexpr int kLaterFelt = 200;  ///< samples, by which one force may tell a pun
 void WitnessConfig::read(ConfigReader& reader) {
   reader.number("depth", depth, Range::positive());
   reader.number("force", force, Range::positive());
+  reader.number("gap", gap, Range::positive());
   reader.number("ratio", ratio, Range{1, std::numeric_limits<double>::infinity(), true, true});
 }
 
@@ -51,7 +52,22 @@ void ForceWitness::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis,
   largest_ = std::max(largest_, monitor_.force());
 }
 
+void ForceWitness::see(const NeedleMonitor& acting, const std::optional<Image>& image, double dt) {
+  const bool deep = acting.touched() && acting.depthOf(tip_, axis_) > config_.depth;
+  deep_ = deep ? deep_ + dt : 0;
+  // An image from before shows another place.
+  if (!image || image->age > deep_) return gap_.reset();
+  gap_ = image->gap;
+}
+
 std::string ForceWitness::disagreement(const NeedleMonitor& acting) const {
+  if (gap_ && *gap_ > config_.gap) {
+    std::ostringstream text;
+    text << (config_.measured ? "the prediction" : "the sensor") << " has felt a touch " << config_.depth
+         << " m ago, the image shows the tip " << *gap_
+         << " m before the cell; allowed is witness/gap = " << config_.gap << " m";
+    return text.str();
+  }
   if (!heard_ || !monitor_.ready() || !acting.ready() || !(acting.touched() || monitor_.touched())) return "";
   // A model whose membrane fails earlier than the real one says nothing of the sensor.
   if (punctured_)
@@ -70,7 +86,8 @@ std::string ForceWitness::disagreement(const NeedleMonitor& acting) const {
     text << one << " has felt a touch " << depth << " m ago and " << more.force() << " N since, " << other
          << " none; allowed are witness/depth = " << config_.depth << " m and witness/force = " << config_.force
          << " N";
-  } else if (more.force() > config_.force && more.force() > config_.ratio * less.force()) {
+  } else if (less.depthOf(tip_, axis_) > config_.depth && more.force() > config_.force &&
+             more.force() > config_.ratio * less.force()) {
     text << one << " feels " << more.force() << " N, " << other << ' ' << less.force()
          << " N; allowed is a ratio of witness/ratio = " << config_.ratio;
   }

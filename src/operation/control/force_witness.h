@@ -13,8 +13,9 @@ namespace microinjection {
 struct WitnessConfig {
   /// m and N past the touch that one of the two forces has felt, by which the other one must have felt it, too. The
   /// places of the two touches differ by where the scene has the cell, by noise and by latency.
-  double depth = 10e-6, force = 0.5e-6;
-  double ratio = 5;      ///< of the two forces, once the larger one is past `force`
+  double depth = 10e-6, force = 0.6e-6;
+  double ratio = 5;      ///< of the two forces, once the larger one is past `force`, and both touches are `depth` ago
+  double gap = 3e-6;     ///< m, of the tip before the cell in an image, `depth` past a touch
   bool measured = true;  ///< the witness is the sensor's force: it also feels whether a membrane failed
 
   void read(ConfigReader& reader);
@@ -34,6 +35,15 @@ class ForceWitness {
   /// After the controller's monitor; `force` (N, on the tip, `world`): empty without a valid one.
   void step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, const std::optional<Eigen::Vector3d>& force);
 
+  /// What an image shows of a tip before its cell.
+  struct Image {
+    double age = 0;  ///< s since it was exposed
+    double gap = 0;  ///< m along the needle, from the cell's undisturbed outline to the tip; negative: deeper
+  };
+  /// After step() and the controller's monitor `acting`: a touch that an image denies, since before the outline no tip
+  /// touches. `dt`: s. An image that shows the tip deeper says nothing: the needle may be above the cell in the view.
+  void see(const NeedleMonitor& acting, const std::optional<Image>& image, double dt);
+
   /// Why the needle must not go on; empty: the two forces agree, or there is no witness. `acting`: the monitor of the
   /// force that the controller acts on. Only before the first puncture: the membranes of a cell and of its model may
   /// fail one after the other.
@@ -46,9 +56,11 @@ class ForceWitness {
   NeedleMonitor monitor_;
   Eigen::Vector3d tip_ = Eigen::Vector3d::Zero(), axis_ = Eigen::Vector3d::UnitZ();  ///< m; of the last step
   bool heard_ = false;                                                               ///< in the last step
-  bool punctured_ = false;  ///< a puncture was felt since the touch
-  int since_puncture_ = 0;  ///< samples
-  double largest_ = 0;      ///< N, of the smoothed force, since the touch
+  bool punctured_ = false;     ///< a puncture was felt since the touch
+  int since_puncture_ = 0;     ///< samples
+  double largest_ = 0;         ///< N, of the smoothed force, since the touch
+  double deep_ = 0;            ///< s for which the acting force has felt the touch more than `depth` ago
+  std::optional<double> gap_;  ///< m, in an image since then
 };
 
 }  // namespace microinjection

@@ -187,8 +187,13 @@ void InjectionController::resetMonitors() {
 
 /// Why no pulse may begin; empty: no witness denies the puncture.
 std::string InjectionController::contradiction() const {
+  if (!witness_fault_.empty()) return witness_fault_;
   if (denies_puncture_) return "the force fell, but the cell whose force is predicted is not punctured";
   return witness_.deniesPuncture();
+}
+
+std::string InjectionController::disagreement() const {
+  return witness_fault_.empty() ? witness_.disagreement(monitor_) : witness_fault_;
 }
 
 void InjectionController::observe(const Input& input, bool force_valid, double dt) {
@@ -197,12 +202,14 @@ void InjectionController::observe(const Input& input, bool force_valid, double d
     witness_.skip();
   }
   denies_puncture_ = input.predicted_inside && !*input.predicted_inside;
+  witness_fault_ = input.witness_fault;
   witness_.step(*input.needle, input.axis, input.witness);
   if (force_valid) {
     monitor_.step(*input.needle, input.axis, *input.force);
   } else {
     monitor_.skip();
   }
+  witness_.see(monitor_, input.image, dt);
   if (!byHand()) return;
   monitorManualPulse(input, dt);
   if (!force_valid) return;
@@ -279,7 +286,7 @@ std::optional<Eigen::Vector3d> InjectionController::ownTarget(const Input& input
   }
   run_.expect(input.expected);
   InjectionRun::Step step = run_.step(injection_, monitor_, input.injector, *setpoint_, input.axis, dt);
-  if (!step.stop) step.reason = out || run_.result().punctures > 0 ? "" : witness_.disagreement(monitor_);
+  if (!step.stop) step.reason = out || run_.result().punctures > 0 ? "" : disagreement();
   if (step.event == InjectionEvent::kInject && step.reason.empty() && run_.goal().puncture)
     step.reason = contradiction();
   if (!step.stop && !step.reason.empty()) {

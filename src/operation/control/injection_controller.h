@@ -63,6 +63,7 @@ struct InjectionControllerConfig {
 ///     speed of set-point  never above the limit
 class InjectionController {
  public:
+  using Image = ForceWitness::Image;
   /// Valid inputs of this cycle; empty: absent, stale or not finite.
   struct Input {
     std::optional<Eigen::Vector3d> target;  ///< m, `world`
@@ -72,6 +73,8 @@ class InjectionController {
     std::string rig_hold;                             ///< why the rig does not follow set-points; empty: it does
     std::optional<ExpectedPuncture> expected;         ///< of the outermost membrane
     std::optional<Eigen::Vector3d> witness;           ///< N, as `force`, of the source that it is not: see ForceWitness
+    std::string witness_fault;                        ///< why it cannot be believed; empty: it can, or there is none
+    std::optional<Image> image;                       ///< of the tip before the cell, when it is sure
     std::optional<bool> predicted_inside;             ///< whether the cell whose force is predicted is punctured
     bool cell_changed = false;                        ///< its force now is no event of the needle
     Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< of the pipette, out of the cell, `world`
@@ -117,6 +120,8 @@ class InjectionController {
   /// home on.
   bool homed() const { return needle_valid_ && !unhomed_; }
   const std::string& holdReason() const { return hold_reason_; }  ///< empty while the needle follows
+  /// Why a witness does not agree with the force that the controller acts on; empty: all do.
+  std::string disagreement() const;
   bool followsTarget() const { return state_ == OperatingState::kEnabled && hold_reason_.empty(); }
   /// Why the last command was refused, or its pulse by hand ended early; else empty.
   const std::string& notice() const { return notice_; }

@@ -31,7 +31,7 @@ Engagement::State Engagement::step(const Input& input) {
   reason_.clear();
   if (input.clutch) has_reference_ = false;
   const bool followed = state_ == State::kFollow;
-  const bool lost = followed && tooFast(input);
+  const bool lost = followed && (tooFast(input) || input.leaps);
   if (lost) rest_time_left_ = config_.rest_time;
   if (input.held) {
     if (followed) held_time_ = 0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <string>
@@ -18,6 +19,9 @@ struct EngagementConfig {
   double interruption = 0.2;   ///< s, longest hold not caused by the operator that leaves the stroke intact
 
   static EngagementConfig read(ConfigReader reader);
+  /// m, of a hand that may lead the needle from one measurement to the next, `dt` (s) later. The stamps of a driver may
+  /// come 10 ms too close.
+  double longestStep(double dt) const { return speed_limit * std::max(dt, 0.01); }
 };
 
 /// Decides when the needle follows the hand: held -> align -> follow, as other teleoperation
@@ -28,8 +32,8 @@ struct EngagementConfig {
 ///   the hand must also return to where it left the needle, or the operator presses and releases
 ///   the clutch to set a new reference. A device that sets a speed must be released first, with or
 ///   without a clutch.
-/// - follow: a hand above speed_limit no longer holds the device. It returns to align until it has
-///   rested.
+/// - follow: a hand above speed_limit no longer holds the device, and one whose position leaps is not
+///   where its device says. It returns to align until it has rested.
 ///
 /// The hand must be slow at engagement: a fast one would push a needle that the operator believes
 /// to be held. One case is exempt: needle or force were invalid for less than `interruption`,
@@ -48,6 +52,7 @@ class Engagement {
     bool interrupted = false;  ///< held only because needle or force is invalid
     double dt = 1e-3;          ///< s
     bool released = true;      ///< the hand here commands no motion (MotionMapping::isAtRest)
+    bool leaps = false;        ///< its last step was longer than EngagementConfig::longestStep
   };
 
   explicit Engagement(const EngagementConfig& config) : config_(config) {}

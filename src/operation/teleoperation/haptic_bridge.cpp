@@ -86,7 +86,7 @@ HapticBridge::Output HapticBridge::step(const Input& input, double dt) {
                            (!config_.require_operator || input.operator_present);
   const double speed = motion_.isRate() ? 0 : passivity_.velocity().norm();  // a released stick springs back fast
   output.state = engagement_.step({held, input.clutch, speed, held ? 0 : motion_.misalignment(hand, *input.needle),
-                                   interrupted, dt, motion_.isAtRest(hand)});
+                                   interrupted, dt, motion_.isAtRest(hand), input.hand_leaps && !motion_.isRate()});
   if (output.state != Engagement::State::kFollow) {
     if (!held) output.hold_reason = engagement_.reason();
     output.hand_force = render(Eigen::Vector3d::Zero(), dt);

@@ -55,6 +55,7 @@ class HapticBridge {
     std::optional<Eigen::Vector3d> hand;    ///< m, haptic device, its axes
     std::optional<Eigen::Vector3d> needle;  ///< m, tip in `world`
     TipForces force;                        ///< N, of the cell on the tip, in `world`
+    bool hand_leaps = false;                ///< since the last step, see EngagementConfig::longestStep
     bool clutch = false;                    ///< pressed
     bool operator_present = false;          ///< counts with require_operator
     std::string no_force_reason;            ///< why the device does not render the force; empty: it does

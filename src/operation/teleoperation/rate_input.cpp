@@ -23,6 +23,8 @@ RateInputConfig RateInputConfig::read(ConfigReader& reader) {
   return config;
 }
 
+RateInput::RateInput(const RateInputConfig& config) : config_(config), deflection_(config.renewal), rest_(kRest) {}
+
 std::optional<RateInput::Reading> RateInput::read(const std::vector<float>& axes, const std::vector<int>& buttons,
                                                   double time) {
   Eigen::Vector3d raw;
@@ -33,16 +35,15 @@ std::optional<RateInput::Reading> RateInput::read(const std::vector<float>& axes
     raw[i] = axes[index];
   }
   if (config_.dead_man >= static_cast<int>(buttons.size())) return std::nullopt;
-  if (raw != last_) changed_ = time;
-  last_ = raw;
-  const double unchanged = time - changed_;
-  if (unchanged > kRest && raw.cwiseAbs().maxCoeff() <= kLargestZero) zero_ = raw;
+  const double dt = time - time_;
+  time_ = time;
+  if (rest_.step(raw, dt) && raw.cwiseAbs().maxCoeff() <= kLargestZero) zero_ = raw;
   // Within `centre` of either zero: a device that was off its zero may come back to the true one.
   Eigen::Vector3d share = raw - zero_;
   if (raw.cwiseAbs().maxCoeff() < config_.centre) share.setZero();
   const double deflected = share.cwiseAbs().maxCoeff();
-  repeats_ = deflected >= config_.centre && unchanged * deflected > config_.renewal;
-  if (repeats_) {
+  if (deflected < config_.centre) deflection_.reset();
+  if (deflection_.step(raw, dt * deflected)) {
     released_ = false;
     return std::nullopt;
   }

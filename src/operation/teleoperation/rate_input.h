@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/config_reader.h"
+#include "base/repetition.h"
 
 namespace microinjection {
 
@@ -30,7 +31,7 @@ struct RateInputConfig {
 /// device that rests off its zero repeats that deflection, too: it becomes the zero.
 class RateInput {
  public:
-  explicit RateInput(const RateInputConfig& config) : config_(config) {}
+  explicit RateInput(const RateInputConfig& config);
 
   struct Reading {
     Eigen::Vector3d position;  ///< m
@@ -42,15 +43,15 @@ class RateInput {
   /// The joystick is stale: the stick must be released again.
   void reset() { released_ = false; }
   /// Whether the deflection has not changed for longer than RateInputConfig::renewal allows.
-  bool repeats() const { return repeats_; }
+  bool repeats() const { return deflection_.repeats(); }
 
  private:
   RateInputConfig config_;
   bool released_ = false;                           ///< the stick was released since the dead-man button is held
   Eigen::Vector3d zero_ = Eigen::Vector3d::Zero();  ///< shares of the axes, of a device that rests there
-  Eigen::Vector3d last_ = Eigen::Vector3d::Zero();  ///< shares
-  double changed_ = 0;                              ///< s, time of the last change
-  bool repeats_ = false;
+  Repetition<Eigen::Vector3d> deflection_;          ///< shares, exposed to s x deflection
+  Repetition<Eigen::Vector3d> rest_;                ///< the same, exposed to s
+  double time_ = 0;                                 ///< s, of the last reading
 };
 
 }  // namespace microinjection

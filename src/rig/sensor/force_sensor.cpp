@@ -41,6 +41,13 @@ ForceSensorConfig ForceSensorConfig::read(ConfigReader& reader) {
   return config;
 }
 
+bool ForceSensorConfig::mayRepeat(double rate) const {
+  constexpr double kShown = 0.65;  ///< of the step
+  const Eigen::Array2d noise = density.array() * std::sqrt(sample_rate / 2);
+  const Eigen::Array2d step = 2 * range.array() / std::pow(2.0, bits);
+  return (noise < kShown * step).all() || sample_rate < rate;
+}
+
 ForceSensor::ForceSensor(const ForceSensorConfig& config)
     : config_(config),
       normal_(static_cast<std::uint64_t>(config.seed)),

@@ -29,6 +29,9 @@ struct ForceSensorConfig {
   int seed = 1;                ///< of the noise
 
   static ForceSensorConfig read(ConfigReader& reader);
+  /// Whether a sensor that lives may repeat readings that are taken at `rate` (Hz): on both axes the noise of a sample
+  /// is below 0.65 of the converter's step, or a sample is read more than once.
+  bool mayRepeat(double rate) const;
 };
 
 /// Model of a two-axis force sensor at the pipette. Its mechanics respond to the force on the tip,

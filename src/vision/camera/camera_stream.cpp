@@ -7,11 +7,9 @@
 #include "base/errors.h"
 
 namespace microinjection {
-namespace {
 
-/// Whether two images have the same bytes. Rows are compared, because an image may have gaps between
-/// them.
-bool same(const cv::Mat& a, const cv::Mat& b) {
+/// Rows are compared, because an image may have gaps between them.
+bool SameImage::operator()(const cv::Mat& a, const cv::Mat& b) const {
   if (a.size() != b.size() || a.type() != b.type()) return false;
   const std::size_t width = a.elemSize() * static_cast<std::size_t>(a.cols);
   for (int row = 0; row < a.rows; ++row) {
@@ -19,8 +17,6 @@ bool same(const cv::Mat& a, const cv::Mat& b) {
   }
   return true;
 }
-
-}  // namespace
 
 CameraStream::CameraStream(const FrameSourceConfig& config, Open open)
     : is_device_(config.source == "device"), open_(std::move(open)) {
@@ -79,9 +75,7 @@ std::optional<CameraFrame> CameraStream::next() {
 }
 
 bool CameraStream::repeats(const CameraFrame& frame) {
-  const bool repeated = same(frame.image, last_);
-  last_ = frame.image;
-  if (!repeated) return false;
+  if (!images_.step(frame.image, 1)) return false;
   const std::lock_guard<std::mutex> lock(mutex_);
   ++state_.repeated;
   return true;

@@ -6,10 +6,16 @@
 #include <optional>
 #include <string>
 
+#include "base/repetition.h"
 #include "vision/camera/frame_source.h"
 #include "vision/camera/frame_source_config.h"
 
 namespace microinjection {
+
+/// Whether two images have the same bytes.
+struct SameImage {
+  bool operator()(const cv::Mat& a, const cv::Mat& b) const;
+};
 
 /// What a stream did since its start.
 struct CameraStreamState {
@@ -53,7 +59,7 @@ class CameraStream {
   Open open_;
   std::unique_ptr<FrameSource> source_;  ///< null: to be opened again
   double period_ = 0;
-  cv::Mat last_;  ///< of a device
+  Repetition<cv::Mat, SameImage> images_{0};  ///< of a device
   mutable std::mutex mutex_;
   CameraStreamState state_;
 };

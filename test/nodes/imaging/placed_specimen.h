@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "cell_microinjection/CellContact.h"
 #include "cell_microinjection/CellState.h"
 #include "cell_microinjection/VisionState.h"
 #include "virtual_session.h"
@@ -102,6 +103,12 @@ class PlacedSpecimen {
                                             [this] { return std::optional(poseMessage(tip.x(), tip.y(), tip.z())); });
     node.repeat<cell_microinjection::CellState>("/cell/state",
                                                 [this] { return cell_is_silent ? std::nullopt : std::optional(cell); });
+    node.repeat<cell_microinjection::CellContact>("/cell/contact", [this] {
+      cell_microinjection::CellContact contact;
+      contact.in_contact = cell.in_contact;
+      contact.inside = cell.inside;
+      return cell_is_silent ? std::nullopt : std::optional(contact);
+    });
   }
   PlacedSpecimen(const PlacedSpecimen&) = delete;
 

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "cell_microinjection/CellParameters.h"
+#include "cell_microinjection/VisionState.h"
 #include "nodes/injection/injection_chain.h"
 
 namespace microinjection {
@@ -22,6 +25,29 @@ class WitnessesTest : public testing::Test {
       return std::vector<Passage>{passage};
     });
   }
+  /// N, of 10 nN rms.
+  double noise() { return noise_(random_); }
+  std::mt19937 random_{1};
+  std::normal_distribution<double> noise_{0, 10e-9};
+
+  /// From now on an image each 30 ms, in which the tip is so far (m) before the outline of the cell.
+  static void showTip(InjectionChain& chain, double gap) {
+    constexpr double kPixel = 0.25e-6;  // m
+    chain.session.addTestNode("seer", 0.03).repeat<cell_microinjection::VisionState>("vision/state", [gap] {
+      cell_microinjection::VisionState state;
+      state.pixel_size = kPixel;
+      state.cell.verdict = state.cell.FOUND;
+      state.injection_pipette.verdict = state.injection_pipette.FOUND;
+      state.indentation.gap = gap / kPixel;
+      return std::optional(state);
+    });
+  }
+  static void expectHeldWith(InjectionChain& chain, const std::string& words) {
+    EXPECT_TRUE(chain.session.until([&] { return chain.status().outcome == "guard"; }, 10)) << chain.status();
+    EXPECT_NE(chain.status().reason.find(words), std::string::npos) << chain.status().reason;
+    EXPECT_EQ(chain.injector().pulses, 0u);
+    EXPECT_EQ(chain.status().punctures, 0u);
+  }
   static void expectHeldBeforeAPuncture(InjectionChain& chain) {
     EXPECT_TRUE(chain.session.until([&] { return chain.status().outcome == "guard"; }, 30)) << chain.status();
     EXPECT_NE(chain.status().reason.find("the sensor"), std::string::npos) << chain.status().reason;
@@ -33,10 +59,13 @@ class WitnessesTest : public testing::Test {
   }
 };
 
+/// Its cable is out; the amplifier still has its noise, or the reading would repeat.
 TEST_F(WitnessesTest, ADeadSensorHoldsTheApproach) {
   InjectionChain chain({kMeasured}, "tough_oocyte");
-  alterForce(chain, "/force_sensor/measured_cf",
-             [](Wrench& wrench) { wrench.wrench.force.x = wrench.wrench.force.y = wrench.wrench.force.z = 0; });
+  alterForce(chain, "/force_sensor/measured_cf", [this](Wrench& wrench) {
+    wrench.wrench.force.x = wrench.wrench.force.y = 0;
+    wrench.wrench.force.z = noise();
+  });
   chain.say("approach");
   expectHeldBeforeAPuncture(chain);
 }
@@ -46,10 +75,53 @@ TEST_F(WitnessesTest, ASensorThatFreezesAtTheTouchHoldsTheNeedle) {
   std::optional<geometry_msgs::Wrench> frozen;
   alterForce(chain, "/force_sensor/measured_cf", [&](Wrench& wrench) {
     if (!frozen && chain.cell().in_contact) frozen = wrench.wrench;
-    if (frozen) wrench.wrench = *frozen;
+    if (!frozen) return;
+    wrench.wrench = *frozen;
+    wrench.wrench.force.z += noise();
   });
   chain.say("approach");
   expectHeldBeforeAPuncture(chain);
+}
+
+TEST_F(WitnessesTest, AnImageOfTheTipBeforeTheCellHoldsTheNeedle) {
+  InjectionChain chain({}, "tough_oocyte");
+  showTip(chain, 5e-6);
+  chain.say("approach");
+  expectHeldWith(chain, "the image shows the tip 5e-06 m before the cell");
+  EXPECT_LT(chain.status().depth, 11e-6);
+}
+
+/// The needle may be above the cell in the view, or the image of before.
+TEST_F(WitnessesTest, AnImageOfTheTipInTheCellSaysNothing) {
+  InjectionChain chain({}, "tough_oocyte");
+  showTip(chain, -5e-6);
+  chain.say("approach");
+  EXPECT_TRUE(chain.session.until([&] { return chain.status().depth > 13e-6; }, 10)) << chain.status();
+  EXPECT_EQ(chain.status().state, "indent");
+}
+
+TEST_F(WitnessesTest, AWitnessThatTwoNodesSendHoldsTheNeedle) {
+  InjectionChain chain({}, "tough_oocyte");
+  chain.say("approach");
+  ASSERT_TRUE(chain.reaches("indent"));
+  chain.session.addTestNode("stranger").repeat<Wrench>("force_sensor/measured_cf", [this] {
+    return std::optional(wrenchMessage(0, 0, 0.3e-6 + noise(), "needle_tip"));
+  });
+  expectHeldWith(chain, "is sent by two nodes");
+}
+
+TEST_F(WitnessesTest, AWitnessThatRepeatsItselfHoldsTheNeedle) {
+  InjectionChain chain({}, "tough_oocyte");
+  chain.say("approach");
+  ASSERT_TRUE(chain.reaches("indent"));
+  std::optional<geometry_msgs::Wrench> frozen;
+  alterForce(chain, "/force_sensor/measured_cf", [&](Wrench& wrench) {
+    if (!frozen) frozen = wrench.wrench;
+    wrench.wrench = *frozen;
+  });
+  const Eigen::Vector3d from = chain.needle();
+  expectHeldWith(chain, "repeats one reading");
+  EXPECT_LT((chain.needle() - from).norm(), 2e-6);
 }
 
 TEST_F(WitnessesTest, AForceThatFallsWithoutAPunctureGivesNoPulse) {

@@ -41,7 +41,8 @@ class ForceTopic : public testing::Test {
   Eigen::Vector3d force() { return toVector(measured().wrench.force); }
   Eigen::Vector3d torque() { return toVector(measured().wrench.torque); }
 
-  VirtualSession session_{{"sensor.source:=topic"}};
+  // The test's wrench has no noise.
+  VirtualSession session_{{"sensor.source:=topic", "sensor.quiet:=true"}};
   const Probe<Wrench>& probe_ = session_.world().hear<Wrench>("force_sensor/measured_cf");
   std::optional<Wrench> wrench_ = wrench(1e-6, 2e-6, 3e-6);
 };

@@ -45,7 +45,7 @@ class LinkTest : public testing::Test {
   VirtualSession session_{{"cell:=" + testFile("scenes/coarse_oocyte.yaml"), "model:=live", "hand.device:=external",
                            "hand.require_operator:=false", "link.scheme:=wave", "link.delay:=0.05",
                            "link.jitter:=0.025", "link.loss:=0.2", "sensor.source:=none", "injector:=none",
-                           "display.markers:=false"}};
+                           "display.markers:=false", "overrides.haptic_bridge.timeouts.hand_unchanged:=0"}};
   LedHand hand_{session_};
 };
 

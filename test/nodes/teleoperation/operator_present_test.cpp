@@ -87,7 +87,7 @@ TEST_F(OperatorPresentTest, EachInputIsStaleAfterItsOwnTime) {
 class ButtonsOnChangeTest : public OperatorPresentTest {
  protected:
   ButtonsOnChangeTest()
-      : OperatorPresentTest("{timeouts: {predicted: 0.3, clutch: 0}}",
+      : OperatorPresentTest("{timeouts: {predicted: 0.3, clutch: 0, hand_unchanged: 0}}",
                             {"hand.device:=external", "hand.require_operator:=true"}) {
     silenceButtons();
   }

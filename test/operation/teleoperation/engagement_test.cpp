@@ -48,6 +48,21 @@ TEST(Engagement, AHandThatIsTooFastIsLostUntilItHasRested) {
   EXPECT_EQ(stepFor(3e-3, slow), State::kFollow);
 }
 
+TEST(Engagement, AHandThatLeapsIsLostAtOnce) {
+  EngagementConfig config;
+  Engagement engagement(config);
+  engagement.step({});
+  Engagement::Input leap;
+  leap.leaps = true;
+  EXPECT_EQ(engagement.step(leap), State::kAlign);
+  EXPECT_NE(engagement.reason().find("rest"), std::string::npos);
+  for (int i = 0; i < std::lround(config.rest_time / 1e-3) - 2; ++i) ASSERT_EQ(engagement.step({}), State::kAlign) << i;
+  for (int i = 0; i < 4; ++i) engagement.step({});
+  EXPECT_EQ(engagement.state(), State::kFollow);
+  EXPECT_DOUBLE_EQ(config.longestStep(0.1), 0.1 * config.speed_limit);
+  EXPECT_DOUBLE_EQ(config.longestStep(1e-4), 0.01 * config.speed_limit) << "stamps of a burst";
+}
+
 TEST(Engagement, AHandThatIsLostWhileHeldIsNotTakenUpAtOnceEither) {
   Engagement engagement{{}};
   engagement.step({});

@@ -20,7 +20,8 @@ TEST(HapticBridgeConfig, TheOneThatIsShippedHasTheDefaults) {
   std::string axes_file;
   reader.text("axes_file", axes_file, ConfigReader::kRequired);
   ConfigReader timeouts = reader.section("timeouts", ConfigReader::kRequired);
-  for (const char* input : {"hand", "clutch", "operator_present", "needle", "predicted", "measured", "controller"}) {
+  for (const char* input :
+       {"hand", "hand_unchanged", "clutch", "operator_present", "needle", "predicted", "measured", "controller"}) {
     double timeout = 0;
     timeouts.number(input, timeout, Range::nonNegative(), ConfigReader::kRequired);
   }
