@@ -1,6 +1,9 @@
 #include "rig/devices/serial_manipulator.h"
 
 #include <algorithm>
+#include <utility>
+
+#include "rig/devices/known_answers.h"
 
 namespace microinjection {
 namespace {
@@ -12,6 +15,7 @@ constexpr double kLongestGap = 0.02;    // s between two steps; in a longer gap 
 constexpr double kPauseInFault = 0.5;   // s, between attempts in a fault
 constexpr int kAttempts = 3;            // successive failures that cause a fault
 constexpr double kStreamEnds = 0.1;     // s; a longer pause ends a stream of set-points
+constexpr std::size_t kHeard = 256;     // bytes, for a name of what answers
 constexpr int kSuccessesToForget = 12;  // successful exchanges that reset the count of failures
 
 }  // namespace
@@ -22,7 +26,48 @@ SerialManipulator::SerialManipulator(std::unique_ptr<Wire> wire, const Link& lin
 }
 
 SerialManipulator::~SerialManipulator() {
-  if (wire_->isOpen()) wire_->write(link_.stop + link_.farewell, time_);
+  if (wire_->isOpen() && known_) wire_->write(link_.stop + link_.farewell, time_);
+}
+
+void SerialManipulator::askFirst(const PortProbe::Question& question) {
+  probe_.setQuestion(question);
+  known_ = false;
+  wire_->setGuardedStop("");
+}
+
+void SerialManipulator::beginLine() {
+  was_open_ = lost_ = true;
+  served_ = false;
+  heard_.clear();
+  reason_ = link_.device + ": connected, no reply yet";
+  connected();
+  if (known_) return beginSession(link_.quiet_after_loss);
+  probe_.begin(active_time_);
+}
+
+void SerialManipulator::probe(const std::string& bytes) {
+  if (!fault_.empty() && !clearing_) return;
+  if (std::exchange(stop_wanted_, false) && clearing_) probe_.begin(active_time_);
+  switch (probe_.step(bytes, active_time_, [this](const std::string& request) { send(request); })) {
+    case PortProbe::Verdict::kAsks:
+      return;
+    case PortProbe::Verdict::kKnown:
+      known_ = true;
+      wire_->setGuardedStop(link_.stop);
+      return beginSession(link_.quiet_after_loss);
+    case PortProbe::Verdict::kOther:
+      fault_ = link_.device + ": " + probe_.reason();
+      clearing_ = false;
+      lost_ = true;
+      dropGoal();
+  }
+}
+
+/// A reason on a line that has never served, with the other device that answers there.
+std::string SerialManipulator::withOther(const std::string& reason) const {
+  const std::string name = served_ ? "" : nameOfAnswer(heard_);
+  const bool own = name.empty() || name.find(link_.device) != std::string::npos || name.rfind("something", 0) == 0;
+  return own ? reason : reason + "; " + name + " answers: is it the right port?";
 }
 
 void SerialManipulator::follow(const Eigen::Vector3d& joints, const Eigen::Vector3d& velocity) {
@@ -71,6 +116,10 @@ void SerialManipulator::beginSession(double quiet) {
 void SerialManipulator::stopFirst() { beginSession(link_.quiet_in_step); }
 
 void SerialManipulator::connectionLost() {
+  if (probe_.asks()) {
+    known_ = false;
+    wire_->setGuardedStop("");  // until it is known who would hear it
+  }
   was_open_ = exchanging_ = ready_ = positions_valid_ = stop_wanted_ = false;
   next_open_ = time_ + kOpenInterval;
   reason_ = link_.device + ": the line broke; trying again";
@@ -115,7 +164,7 @@ void SerialManipulator::disconnect() {
 
 void SerialManipulator::raiseFault(const std::string& reason) {
   const bool again = !fault_.empty() && !clearing_;
-  fault_ = link_.device + ": " + reason;
+  fault_ = link_.device + ": " + withOther(reason);
   clearing_ = positions_valid_ = false;
   lost_ = true;
   dropGoal();
@@ -123,7 +172,7 @@ void SerialManipulator::raiseFault(const std::string& reason) {
 }
 
 void SerialManipulator::confirmPositions() {
-  ready_ = positions_valid_ = true;
+  ready_ = positions_valid_ = served_ = true;
   if (clearing_) fault_.clear();
   clearing_ = false;
 }
@@ -164,13 +213,12 @@ void SerialManipulator::step(double time) {
     next_open_ = time + kOpenInterval;
     reason_ = wire_->open();
     if (!reason_.empty()) return;
-    was_open_ = lost_ = true;
-    reason_ = link_.device + ": connected, no reply yet";
-    connected();
-    beginSession(link_.quiet_after_loss);
+    beginLine();
   }
   std::string bytes = wire_->read(time);
   if (!wire_->isOpen()) return connectionLost();
+  if (!known_) return probe(bytes);
+  if (!served_ && heard_.size() < kHeard) heard_ += bytes;
   if (!guarded()) return;
   if (positions_valid_ && active_time_ > valid_until_) return disconnect();
   if (stop_wanted_) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "rig/devices/port_probe.h"
 #include "rig/manipulator/manipulator_device.h"
 #include "rig/serial/wire.h"
 
@@ -15,7 +16,8 @@ namespace microinjection {
 /// Common part of all drivers on a serial line: connection, stop, failed exchanges, faults. A
 /// derived class implements the device's protocol.
 ///
-/// A session begins after the line was opened and after every failure. It starts with a stop. Late
+/// On a new line a driver whose stop another device could misunderstand asks first who is there
+/// (PortProbe). A session begins after the line was opened and after every failure. It starts with a stop. Late
 /// bytes are discarded until the line has been silent. Then the driver reads all positions. Only
 /// when they are valid may the device move. A device without a valid position for longer than a
 /// failed exchange takes counts as disconnected, and rests until the next command. After several
@@ -54,6 +56,9 @@ class SerialManipulator : public ManipulatorDevice {
   SerialManipulator(std::unique_ptr<Wire> wire, const Link& link);
   ~SerialManipulator() override;  ///< sends a stop and the farewell
 
+  /// To be called in the constructor of a driver whose bytes could move another device: nothing but this question is
+  /// sent on a new line until it is answered.
+  void askFirst(const PortProbe::Question& question);
   /// Called after the line was opened. There may be another device now.
   virtual void connected() {}
   /// Starts a session: pending requests are void, and a stop was sent. `lost`: after a failure or
@@ -102,6 +107,9 @@ class SerialManipulator : public ManipulatorDevice {
 
  private:
   void beginSession(double quiet);
+  void beginLine();
+  void probe(const std::string& bytes);
+  std::string withOther(const std::string& reason) const;
   void connectionLost();
   bool guarded();
   void disconnect();
@@ -121,6 +129,10 @@ class SerialManipulator : public ManipulatorDevice {
   double quiet_ = 0;        // s, of silence to wait for
   bool was_open_ = false, exchanging_ = false, ready_ = false, clearing_ = false, stop_wanted_ = false;
   bool positions_valid_ = false;
+  PortProbe probe_;
+  bool known_ = true;     // what is at this line
+  bool served_ = false;   // its positions were valid on this line
+  std::string heard_;     // on this line, until then
   bool lost_ = true;      // nothing was valid before this session
   bool stopped_ = false;  // a stop was sent, and no motion since
   int failures_ = 0, successes_ = 0;

@@ -102,6 +102,12 @@ struct SerialPort::Line {
 SerialPort::SerialPort(const SerialPortConfig& config) : config_(config) {}
 SerialPort::~SerialPort() = default;
 
+/// heartbeat() tells when there is no guard.
+void SerialPort::setGuardedStop(const std::string& bytes) {
+  guarded_stop_ = bytes;
+  if (line_ && !bytes.empty()) line_->stop_guard.begin(line_->port.native_handle(), bytes);
+}
+
 std::string SerialPort::open() {
   line_ = std::make_unique<Line>();
   std::string reason = line_->open(config_);

@@ -35,7 +35,7 @@ class SerialPort : public Wire {
   explicit SerialPort(const SerialPortConfig& config);
   ~SerialPort() override;
 
-  void setGuardedStop(const std::string& bytes) override { guarded_stop_ = bytes; }
+  void setGuardedStop(const std::string& bytes) override;
   GuardReport heartbeat() override;
   std::string open() override;  ///< discards bytes received before
   bool isOpen() const override;

@@ -10,9 +10,9 @@ class Wire {
  public:
   virtual ~Wire() = default;
 
-  /// Sets the bytes that stop the device. From the next open() on, a guard sends them when this
-  /// program dies without closing the line, or when heartbeat() is not called for 0.2 s. Without
-  /// bytes the line needs no guard.
+  /// Sets the bytes that stop the device. From now on, or from the next open() on, a guard sends them
+  /// when this program dies without closing the line, or when heartbeat() is not called for 0.2 s.
+  /// Without bytes the line needs no guard; they are taken back on a closed line only.
   virtual void setGuardedStop(const std::string& /*bytes*/) {}
 
   struct GuardReport {

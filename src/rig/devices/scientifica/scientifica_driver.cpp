@@ -1,6 +1,7 @@
 #include "rig/devices/scientifica/scientifica_driver.h"
 
 #include <cmath>
+#include <regex>
 
 #include "rig/devices/scientifica/scientifica_protocol.h"
 
@@ -24,6 +25,12 @@ PolledManipulator::Dialect dialect(const ScientificaConfig& config) {
   return dialect;
 }
 
+/// The card says the position of X as a whole number, when it has ended a line that was begun before at last.
+bool isScientificaNumberLine(const std::string& answer) {
+  static const std::regex form(R"((?:[\s\S]*\r)?-?\d+\r)");
+  return std::regex_match(answer, form);
+}
+
 }  // namespace
 
 ScientificaConfig ScientificaConfig::read(ConfigReader& reader) {
@@ -40,7 +47,10 @@ ScientificaConfig ScientificaConfig::read(ConfigReader& reader) {
 }
 
 ScientificaDriver::ScientificaDriver(const ScientificaConfig& config, std::unique_ptr<Wire> wire)
-    : PolledManipulator(config, std::move(wire), dialect(config)), config_(config) {}
+    : PolledManipulator(config, std::move(wire), dialect(config)), config_(config) {
+  // None of its letters begins a command of a Sutter MP-285 or MPC-200.
+  askFirst({"PX\r", isScientificaNumberLine, "a Scientifica", config.reply_timeout});
+}
 
 double ScientificaDriver::count() const { return scientificaCount(config_.version); }
 

@@ -15,6 +15,12 @@ std::string stopAll(const ZaberConfig& config) {
   return bytes;
 }
 
+bool hasZaberReply(const std::string& answer) {
+  const std::vector<ZaberMessage> messages = ZaberParser(false).feed(answer);
+  return std::any_of(messages.begin(), messages.end(),
+                     [](const ZaberMessage& message) { return message.kind == ZaberMessage::Kind::kReply; });
+}
+
 }  // namespace
 
 ZaberDriver::ZaberDriver(const ZaberConfig& config, std::unique_ptr<Wire> wire)
@@ -25,7 +31,10 @@ ZaberDriver::ZaberDriver(const ZaberConfig& config, std::unique_ptr<Wire> wire)
       parser_(config.reply_checksum),
       answer_time_(config.answer_time),
       acceleration_(config.acceleration),
-      may_home_(config.home) {}
+      may_home_(config.home) {
+  // The empty command: no letter that another device could take for one of its own.
+  askFirst({"/\n", hasZaberReply, "a Zaber", config.reply_timeout});
+}
 
 double ZaberDriver::gain() const {
   // A loop with a dead time T is well damped up to a gain of about 0.4 / T; a turn has six

@@ -230,7 +230,7 @@ TEST_F(ZaberTest, StopsWhenItIsDestroyed) {
     explicit Ear(std::string* heard) : heard_(heard) {}
     std::string open() override { return open_ = true, ""; }
     bool isOpen() const override { return open_; }
-    std::string read(double) override { return ""; }
+    std::string read(double) override { return *heard_ == "/\n" ? "@01 0 OK IDLE -- 0\r\n" : ""; }
     void write(const std::string& bytes, double) override { *heard_ = bytes; }
     std::string* heard_;
     bool open_ = false;
@@ -238,7 +238,7 @@ TEST_F(ZaberTest, StopsWhenItIsDestroyed) {
   std::string heard;
   {
     ZaberDriver driver(TestedZaber::config(), std::make_unique<Ear>(&heard));
-    driver.step(1);
+    for (double time = 0; heard.find("stop") == std::string::npos && time < 1;) driver.step(time += 1e-3);
     heard.clear();
   }
   EXPECT_EQ(heard, "/1 1 stop:98\n/1 2 stop:97\n/1 3 stop:96\n");
