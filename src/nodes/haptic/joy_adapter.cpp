@@ -17,7 +17,8 @@ JoyConfig JoyConfig::read(ConfigReader& reader) {
 }
 
 JoyAdapter::JoyAdapter(Cycle& cycle, const JoyConfig& config)
-    : config_(config),
+    : bus_(cycle.bus()),
+      config_(config),
       stick_(config.stick),
       joy_(cycle.input<sensor_msgs::Joy>(config.topic, InputPhase::kSampled, config.timeout)) {
   joy_.onMessage([this](const sensor_msgs::Joy& joy, const ros::Time&) { receive(joy); });
@@ -32,9 +33,19 @@ void JoyAdapter::receive(const sensor_msgs::Joy& joy) {
   last_buttons_ = joy.buttons;
 }
 
+/// The node that publishes the joystick with sticky buttons; empty: there is none.
+std::string JoyAdapter::stickyDriver() const {
+  for (const std::string& node : bus_.publishersOf(config_.topic)) {
+    const YAML::Node sticky = bus_.parameter(node + "/sticky_buttons");
+    if (sticky && sticky.IsScalar() && sticky.as<bool>(false)) return node;
+  }
+  return "";
+}
+
 std::optional<HandReading> JoyAdapter::read(const Cycle::Tick& tick) {
   const sensor_msgs::Joy* joy = joy_.get(tick.now);
-  const auto stick = joy ? stick_.read(joy->axes, joy->buttons, tick.now.toSec()) : std::nullopt;
+  if (!std::exchange(asked_, joy != nullptr) && joy) sticky_ = stickyDriver();
+  const auto stick = joy && sticky_.empty() ? stick_.read(joy->axes, joy->buttons, tick.now.toSec()) : std::nullopt;
   if (!stick) {
     stick_.reset();
     return std::nullopt;
@@ -44,6 +55,10 @@ std::optional<HandReading> JoyAdapter::read(const Cycle::Tick& tick) {
 }
 
 std::string JoyAdapter::invalidReason() const {
+  if (!sticky_.empty()) {
+    return sticky_ + "/sticky_buttons is true: the dead-man button would stay pressed when it is let go; start " +
+           sticky_ + " with _sticky_buttons:=false";
+  }
   if (!stick_.repeats()) return "";
   return "the stick repeats one deflection: a hand changes it now and then; is the receiver's link lost? Let it go "
          "first";

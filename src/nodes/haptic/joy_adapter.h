@@ -21,7 +21,8 @@ struct JoyConfig {
 };
 
 /// A joystick, gamepad or space mouse (sensor_msgs/Joy) for the bridge's rate mode. It renders no
-/// force.
+/// force. A driver whose buttons toggle at each press (~sticky_buttons of joy_node) is refused: a
+/// dead-man button would stay pressed when it is let go.
 class JoyAdapter : public HapticAdapter {
  public:
   using Config = JoyConfig;
@@ -34,11 +35,15 @@ class JoyAdapter : public HapticAdapter {
 
  private:
   void receive(const sensor_msgs::Joy& joy);
+  std::string stickyDriver() const;
 
+  Bus& bus_;
   JoyConfig config_;
   RateInput stick_;
   Input<sensor_msgs::Joy>& joy_;
   std::vector<int> last_buttons_;
+  bool asked_ = false;  ///< whether the buttons of this driver are sticky, since it began to publish
+  std::string sticky_;  ///< the node whose are
   std::vector<std::string> commands_;
 };
 
