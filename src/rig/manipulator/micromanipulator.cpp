@@ -185,7 +185,7 @@ void Micromanipulator::stop() {
 
 void Micromanipulator::clearFault() {
   if (device_->state() == ManipulatorDevice::State::kReady) streams_blocked_ = false;
-  fault_cleared_ = device_->state() == ManipulatorDevice::State::kFault;
+  fault_cleared_ = device_->state() != ManipulatorDevice::State::kReady;
   rest();
   device_->clearFault();
 }
@@ -198,7 +198,7 @@ void Micromanipulator::step(double time, double dt) {
     if (mode_ != Mode::kHold) abort_reason_ = reason;
     rest();
     move_active_ = false;
-    if (!streams_blocked_ || device_->state() == ManipulatorDevice::State::kDisconnected) fault_cleared_ = false;
+    if (!streams_blocked_) fault_cleared_ = false;  // it was ready in between
     streams_blocked_ = true;
   } else {
     haltIfBlocked();

@@ -32,8 +32,8 @@ struct MicromanipulatorConfig {
 /// and servo_speed_limit is followed without lag. The device follows the set-point, or moves to its
 /// goal. A refused command changes nothing. After a stop or a fault the set-point is the measured
 /// position. A stream of commands that continues through it moves nothing until it has paused for
-/// command_timeout, or until clearFault() while the device is ready, or, once clearFault() has ended a
-/// fault, until it commands the needle to stay where it is: such a stream has seen the fault, and
+/// command_timeout, or until clearFault() while the device is ready, or, after a clearFault() while it
+/// was not, until it commands the needle to stay where it is: such a stream has seen the stop, and
 /// nothing leaps.
 class Micromanipulator {
  public:

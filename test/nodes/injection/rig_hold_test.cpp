@@ -39,9 +39,6 @@ class RigHoldTest : public testing::TestWithParam<RigHold> {
       chain_.session.run(1);
     }
     world().command("needle/state_command", GetParam().by == "pause" ? "resume" : "enable");
-    if (!isOfItsNode()) return;
-    chain_.session.run(0.7);  // until that obeys; then the needle's streams are let go
-    world().command("needle/state_command", "enable");
   }
   static bool isOfItsNode() { return GetParam().by.rfind("its_", 0) == 0; }
   std::string controllerState() {

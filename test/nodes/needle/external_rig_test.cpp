@@ -237,6 +237,25 @@ TEST_F(ExternalRigTest, EnableIsPassedOn) {
   }
 }
 
+/// One enable is enough for a stream that waits at the needle, as that of a controller which yields to its rig.
+TEST_F(ExternalRigTest, AStreamThatWaitsAtTheNeedleGoesOnAfterOneEnable) {
+  double ahead = 0;  // m
+  bench_.world.repeat<geometry_msgs::PoseStamped>("needle/servo_cp",
+                                                  [&]() -> std::optional<geometry_msgs::PoseStamped> {
+                                                    return poseAt(bench_.needle() + Eigen::Vector3d(ahead, 0, 0));
+                                                  });
+  bench_.run(0.3);
+  stage_.state = "DISABLED";
+  ASSERT_TRUE(bench_.until([&] { return bench_.state() == "DISABLED"; }, 0.1));
+  bench_.run(1);
+  bench_.command("enable");
+  ASSERT_TRUE(enabled(0.1)) << bench_.status();
+  bench_.run(0.1);
+  const double begin = stage_.position.x();
+  ahead = 3e-6;
+  EXPECT_TRUE(bench_.until([&] { return stage_.position.x() > begin + 10e-6; }, 2)) << bench_.status();
+}
+
 /// Its DISABLED let an old target be pursued, far away after the stage was moved by hand.
 TEST_F(ExternalRigTest, AnOldTargetOfTheNodeIsNotPursued) {
   stage_.pursues_old_targets = true;

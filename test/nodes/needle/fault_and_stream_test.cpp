@@ -12,6 +12,7 @@ namespace {
 
 /// Its fault, which waits for enable.
 const std::map<std::string, std::string> kFaultOfRig = {{"sim", "error:4"},
+                                                        {"external", "error:4"},
                                                         {"emulated_zaber", "error:FS"},
                                                         {"emulated_mp285", "silence:5"},
                                                         {"emulated_eppendorf", "silence:5"},
@@ -76,7 +77,7 @@ TEST_P(FaultAndStreamTest, AStreamThatIsElsewhereMovesNothingAndTheReasonIsSaid)
 }
 
 INSTANTIATE_TEST_SUITE_P(Rigs, FaultAndStreamTest,
-                         testing::Values("sim", "emulated_zaber", "emulated_mp285", "emulated_eppendorf",
+                         testing::Values("sim", "external", "emulated_zaber", "emulated_mp285", "emulated_eppendorf",
                                          "emulated_scientifica"),
                          [](const auto& rig) { return rig.param; });
 
