@@ -155,7 +155,7 @@ TEST(GuardedRig, NothingMovesWhileThereIsNoGuard) {
       driver.step(time += 1e-3);
     }
   };
-  run(0.5);
+  run(1);
   ASSERT_TRUE(device->moves()) << driver.reason();
   wire.report.missing = "it ended";
   device->inject(parseFault("deaf:39"));  // the first three stops
