@@ -14,7 +14,7 @@
 
 #include "base/repetition.h"
 #include "nodes/bus/goal_node.h"
-#include "nodes/imaging/receipt.h"
+#include "nodes/runtime/receipt.h"
 #include "vision/measurement/core_sharpness.h"
 #include "vision/measurement/focus_search.h"
 

@@ -9,8 +9,8 @@
 
 #include "nodes/bus/diagnostics.h"
 #include "nodes/imaging/image_output.h"
-#include "nodes/imaging/receipt.h"
 #include "nodes/runtime/frames.h"
+#include "nodes/runtime/receipt.h"
 #include "vision/microscope/focus_axis.h"
 #include "vision/microscope/microscope.h"
 #include "vision/microscope/specimen.h"

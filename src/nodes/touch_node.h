@@ -10,8 +10,8 @@
 
 #include "nodes/bus/goal_node.h"
 #include "nodes/imaging/hand_setpoints.h"
-#include "nodes/imaging/receipt.h"
 #include "nodes/imaging/tip_watch.h"
+#include "nodes/runtime/receipt.h"
 #include "vision/measurement/touch_search.h"
 
 namespace microinjection {

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "nodes/bus/bus.h"
-#include "nodes/imaging/receipt.h"
 #include "nodes/runtime/awake_time.h"
+#include "nodes/runtime/receipt.h"
 #include "vision/calibration/calibration_run.h"
 
 namespace microinjection {

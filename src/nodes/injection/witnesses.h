@@ -9,8 +9,8 @@
 #include "cell_microinjection/CellContact.h"
 #include "cell_microinjection/CellParameters.h"
 #include "cell_microinjection/VisionState.h"
-#include "nodes/imaging/receipt.h"
 #include "nodes/runtime/force_liveness.h"
+#include "nodes/runtime/receipt.h"
 #include "operation/control/injection_controller.h"
 
 namespace microinjection {

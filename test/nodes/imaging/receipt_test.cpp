@@ -1,4 +1,4 @@
-#include "nodes/imaging/receipt.h"
+#include "nodes/runtime/receipt.h"
 
 #include <gtest/gtest.h>
 
