@@ -47,6 +47,7 @@ const std::vector<Rig>& rigs() {
       rig<EppendorfConfig, EppendorfDriver, EppendorfEmulator>("eppendorf", 19200),
       rig<Mp285Config, Mp285Driver, Mp285Emulator>("mp285", 9600),
       rig<ScientificaConfig, ScientificaDriver, ScientificaEmulator>("scientifica", 38400),
+      rig<EppendorfConfig, EppendorfDriver, TransfermanEmulator>("transferman", 19200),
       rig<ZaberConfig, ZaberDriver, ZaberEmulator>("zaber", 115200),
   };
   return all;

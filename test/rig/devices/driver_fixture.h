@@ -115,6 +115,29 @@ struct TestedEppendorf
   }
 };
 
+/// In microsteps.
+struct TestedTransferman
+    : TestedMoveByMove<EppendorfDriver, EppendorfConfig, TransfermanEmulator, TransfermanEmulatorConfig> {
+  static constexpr char kName[] = "transferman";
+  static constexpr double kStep = 1 / 25.6e6;    // m, a count
+  static constexpr double kMotorStep = kStep;    // m
+  static constexpr double kTold = 0.01 * kStep;  // m
+  static constexpr char kSilence[] = "silence:1.3";
+  static constexpr double kStopOnWire = TestedEppendorf::kStopOnWire;
+  static constexpr bool kMovedByHand = false;
+  static constexpr double kSlower = 0.05;
+  static constexpr double kMostMoves = 2.6;  // its longest lines are twice as long as those of a stream
+  static constexpr double kEndIsSeen = TestedEppendorf::kEndIsSeen;
+  static double offUnderWay(double speed) { return TestedEppendorf::offUnderWay(speed); }
+  static std::vector<std::string> faults() { return TestedEppendorf::faults(); }
+
+  static Config config() {
+    Config config = TestedMoveByMove::config();
+    config.microsteps_per_metre = 25.6e6;
+    return config;
+  }
+};
+
 struct TestedScientifica
     : TestedMoveByMove<ScientificaDriver, ScientificaConfig, ScientificaEmulator, ScientificaEmulatorConfig> {
   static constexpr char kName[] = "scientifica";
@@ -134,8 +157,8 @@ struct TestedScientifica
 };
 
 /// A new driver adds its name here.
-using AllTested = testing::Types<TestedZaber, TestedMp285, TestedEppendorf, TestedScientifica>;
-using AllMoveByMove = testing::Types<TestedMp285, TestedEppendorf, TestedScientifica>;
+using AllTested = testing::Types<TestedZaber, TestedMp285, TestedEppendorf, TestedTransferman, TestedScientifica>;
+using AllMoveByMove = testing::Types<TestedMp285, TestedEppendorf, TestedTransferman, TestedScientifica>;
 struct Names {
   template <typename Tested>
   static std::string GetName(int) {

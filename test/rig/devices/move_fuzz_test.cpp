@@ -55,6 +55,17 @@ TEST(Fuzz, Eppendorf) {
       .run();
 }
 
+TEST(Fuzz, Transferman) {
+  EppendorfConfig config;
+  config.speed = kFuzzedSpeed;
+  config.reply_timeout = 0.05;
+  config.microsteps_per_metre = 25.6e6;
+  const double count = config.count();
+  Fuzz<EppendorfDriver, EppendorfConfig>(config, std::make_shared<TransfermanEmulator>(), forgeDigits,
+                                         allowedUnderWay(config), 1.01 * count, count, 0.01 * count)
+      .run();
+}
+
 TEST(Fuzz, Scientifica) {
   ScientificaConfig config;
   config.speed = kFuzzedSpeed;

@@ -2,61 +2,79 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "rig/devices/eppendorf/eppendorf_protocol.h"
+#include "rig/devices/axis_speeds.h"
+#include "rig/devices/eppendorf/eppendorf_wire.h"
 
 namespace microinjection {
 namespace {
 
-constexpr double kFastest = 7500;  // um/s, of an axis
-constexpr double kSlower = 0.8;    // share of the wanted speed that is enough if the line is kept better
+constexpr double kFastest = 7.5e-3;  // m/s, of an axis
 
-PolledManipulator::Dialect dialect() {
+PolledManipulator::Dialect dialect(const EppendorfConfig& config) {
+  const bool microsteps = config.unit() == EppendorfUnit::kMicrostep;
   PolledManipulator::Dialect dialect;
-  dialect.device = "Eppendorf PatchMan NP 2 or InjectMan NI 2";
+  dialect.device = microsteps ? "Eppendorf TransferMan NK 2" : "Eppendorf PatchMan NP 2 or InjectMan NI 2";
   dialect.short_name = "Eppendorf";
   dialect.guarded_stop = "\r" + eppendorfStop() + "\r";  // ends an incomplete command, and stops it at once
   dialect.farewell = eppendorfManual() + "\r";
   dialect.stop = eppendorfStop();
-  dialect.position = eppendorfPosition();
-  dialect.longest_move = 50;
+  dialect.position = eppendorfPosition(config.unit());
+  dialect.longest_move = microsteps ? 83 : 50;
   dialect.longest_reading = 36;
   dialect.stop_duration = 10e-3;  // assumed; the reply to a stop comes at rest
   dialect.moved_by_hand = false;
   return dialect;
 }
 
-/// Largest distance from the straight line (in the displacement's unit) of a motion whose axes each
-/// move at a speed of their own. It occurs when one of them arrives.
-double deviationOf(const Eigen::Vector3d& displacement, const Eigen::Vector3d& speeds) {
-  const Eigen::Vector3d line = displacement.normalized();
-  double furthest = 0;
-  for (int i = 0; i < 3; ++i) {
-    if (displacement[i] == 0) continue;
-    const double time = std::abs(displacement[i]) / speeds[i];
-    const Eigen::Vector3d travelled =
-        displacement.array().sign().matrix().cwiseProduct((speeds * time).cwiseMin(displacement.cwiseAbs()));
-    furthest = std::max(furthest, (travelled - line * line.dot(travelled)).norm());
-  }
-  return furthest;
-}
-
 }  // namespace
 
 EppendorfConfig EppendorfConfig::read(ConfigReader& reader) {
   EppendorfConfig config;
-  config.readCommon(reader, 19200, {1e-6, 7.5e-3});
+  config.readCommon(reader, 19200, {1e-6, kFastest});
+  reader.number("microsteps_per_metre", config.microsteps_per_metre, Range::closed(0, 1e9));
   return config;
 }
 
 EppendorfDriver::EppendorfDriver(const EppendorfConfig& config, std::unique_ptr<Wire> wire)
-    : PolledManipulator(config, std::move(wire), dialect()) {}
+    : PolledManipulator(config,
+                        config.unit() == EppendorfUnit::kMicrostep ? std::make_unique<EppendorfWire>(std::move(wire))
+                                                                   : std::move(wire),
+                        dialect(config)),
+      config_(config) {}
 
-std::string EppendorfDriver::setup(int step) const { return step == 0 ? eppendorfRemote() : ""; }
+/// Remote control is the last, which is asked for again after a failure. At the first time positions
+/// in both units precede it where they must agree.
+std::string EppendorfDriver::setup(int step) const {
+  const int readings = config_.unit() == EppendorfUnit::kMicrostep && !compared_ ? 2 : 0;
+  if (step < readings) return eppendorfPosition(step == 0 ? EppendorfUnit::kMicrometre : EppendorfUnit::kMicrostep);
+  return step == readings ? eppendorfRemote() : "";
+}
 
-std::string EppendorfDriver::handleSetup(int /*step*/, const std::string& reply) {
-  return isEppendorfReply(reply, eppendorfRemote()) ? "" : "it does not go to remote control";
+std::string EppendorfDriver::handleSetup(int step, const std::string& reply) {
+  const std::string line = setup(step);
+  if (line == eppendorfRemote()) {
+    compared_ = isEppendorfReply(reply, line);
+    return compared_ ? "" : "it does not go to remote control";
+  }
+  const auto position =
+      readEppendorfPosition(reply, step == 0 ? EppendorfUnit::kMicrometre : EppendorfUnit::kMicrostep);
+  if (!position) return "no position";
+  if (step == 0) micrometres_ = position->coordinates;
+  return step == 0 ? "" : checkMicrosteps(position->coordinates);
+}
+
+/// Compares the microsteps of a micrometre with those of the file, where the device is far enough
+/// from its 0 to tell.
+std::string EppendorfDriver::checkMicrosteps(const Eigen::Vector3d& microsteps) const {
+  constexpr double kFar = 200, kAgree = 0.01;  // um, share
+  Eigen::Index motor = 0;
+  if (micrometres_.cwiseAbs().maxCoeff(&motor) < kFar) return "";
+  const double told = microsteps[motor] / micrometres_[motor], wanted = config_.microsteps_per_metre * 1e-6;
+  if (std::abs(told / wanted - 1) < kAgree) return "";
+  return "motor " + std::to_string(motor + 1) + " is at " + std::to_string(std::lround(micrometres_[motor])) +
+         " um, so it has " + std::to_string(told) + " microsteps a micrometre; microsteps_per_metre of the file has " +
+         std::to_string(wanted);
 }
 
 /// The device refuses a stop unless it is under remote control.
@@ -67,45 +85,33 @@ bool EppendorfDriver::isKept(const std::string& /*setting*/, const std::string& 
 }
 
 std::optional<Eigen::Vector3d> EppendorfDriver::readPosition(const std::string& reply) {
-  const std::optional<EppendorfPosition> position = readEppendorfPosition(reply);
+  const std::optional<EppendorfPosition> position = readEppendorfPosition(reply, config_.unit());
   if (!position) return std::nullopt;
   limits_ = position->limits;
   return position->coordinates;
 }
 
 bool EppendorfDriver::acknowledges(const std::string& line, const std::string& reply) const {
-  return isEppendorfReply(reply, line);
+  const bool told = line.find('\r') != std::string::npos;  // its position, at the end of the line
+  return told ? readEppendorfPosition(reply, config_.unit()).has_value() : isEppendorfReply(reply, line);
 }
 
-/// Each axis has a speed of its own, a whole number. The plan takes the fastest speeds, at most the
-/// wanted one and not much slower, that stay within a count of the line, or else those closest to
-/// it. If there are none, an axis would have to be slower than 1 um/s, and the move is faster than
-/// wanted.
+/// Each axis has a speed of its own, a whole number of counts a second.
 PolledManipulator::Plan EppendorfDriver::plan(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double speed,
                                               const Eigen::Vector3d& fastest) const {
-  const Eigen::Vector3d displacement = to - from, most = (fastest.array() * 1e6 + 1e-6).floor().min(kFastest);
-  const Eigen::Vector3d wanted = displacement.cwiseAbs().normalized() * speed * 1e6;
-  const auto rounded = [&](double part) -> Eigen::Vector3d {
-    const Eigen::Vector3d whole = (wanted * part).array().round().min(most.array()).max(1);
-    return (displacement.array() == 0).select(0, whole);
-  };
-  Eigen::Vector3d speeds = rounded(1);
-  double deviation = std::numeric_limits<double>::infinity();
-  for (double part = 1; part > kSlower && deviation > 1; part -= 0.02) {
-    const Eigen::Vector3d each = rounded(part);
-    if (each.norm() > 1.001 * wanted.norm() || deviationOf(displacement, each) >= deviation) continue;
-    speeds = each;
-    deviation = deviationOf(displacement, each);
-  }
-  const Eigen::Vector3d times = (displacement.array() == 0).select(0, displacement.cwiseAbs().cwiseQuotient(speeds));
+  const double per_metre = 1 / count();
+  const Eigen::Vector3d most = (fastest.array() * per_metre + 1e-6).floor().min(kFastest * per_metre);
+  const AxisSpeeds chosen = straightSpeeds(to - from, speed * per_metre, most, 1,
+                                           [](double each) { return std::max(1.0, std::round(each)); });
   std::array<long, 3> position{};
-  std::array<int, 3> line_speeds{};
+  std::array<int, 3> speeds{};
   for (int i = 0; i < 3; ++i) {
     position[i] = std::lround(to[i]);
-    line_speeds[i] = static_cast<int>(speeds[i]);
+    speeds[i] = static_cast<int>(chosen.speeds[i]);
   }
-  return {"", eppendorfGoTo(position, line_speeds), times.maxCoeff(), speeds.norm() * 1e-6,
-          deviationOf(displacement, speeds)};
+  const std::string line = config_.unit() == EppendorfUnit::kMicrostep ? eppendorfGoToMicrosteps(position, speeds)
+                                                                       : eppendorfGoTo(position, speeds);
+  return {"", line, chosen.duration, chosen.speeds.norm() * count(), chosen.deviation};
 }
 
 std::string EppendorfDriver::notArrivedReason() const {

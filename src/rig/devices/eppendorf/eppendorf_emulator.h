@@ -8,7 +8,7 @@
 namespace microinjection {
 
 struct EppendorfEmulatorConfig {
-  double microstep = 0.04e-6;   ///< m; assumed, since the manual's public pages omit it; an NK 2's is 1 / 25.6e6
+  double microstep = 0.04e-6;   ///< m; assumed, since the manual's public pages omit it
   double travel = 10e-3;        ///< m, from 0 to each limit switch
   double answer_time = 3e-3;    ///< s, from the end of a command to the start of its reply; assumed
   bool decimals = false;        ///< reports positions with two decimals
@@ -51,6 +51,15 @@ class EppendorfEmulator : public TextEmulator {
   Eigen::Vector3d speeds_ = Eigen::Vector3d::Zero();                                    // microsteps/s
   bool remote_ = false;
   std::string at_end_;  // reply at rest; empty: none
+};
+
+/// A TransferMan NK 2, whose microsteps AutoInj_GUI tells: 25.6 a micrometre.
+struct TransfermanEmulatorConfig : EppendorfEmulatorConfig {
+  TransfermanEmulatorConfig() { microstep = 1 / 25.6e6; }
+};
+class TransfermanEmulator : public EppendorfEmulator {
+ public:
+  explicit TransfermanEmulator(const TransfermanEmulatorConfig& config = {}) : EppendorfEmulator(config) {}
 };
 
 }  // namespace microinjection

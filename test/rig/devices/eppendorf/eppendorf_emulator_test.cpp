@@ -51,16 +51,9 @@ TEST(EppendorfEmulator, AnswersAGoToAtItsBeginOrAtItsEnd) {
   EXPECT_EQ(client.receive(1), "A007 0\r");
 }
 
-/// A TransferMan NK 2 as AutoInj_GUI has it: 25.6 microsteps a micrometre.
-EppendorfEmulatorConfig transferman() {
-  EppendorfEmulatorConfig config;
-  config.microstep = 1 / 25.6e6;
-  return config;
-}
-
 /// AutoInj_GUI, a public program on cells: line feeds, small letters, micrometres and microsteps.
 TEST(EppendorfEmulator, AnswersWhatAutoInjGuiSends) {
-  EppendorfClient client(transferman());
+  EppendorfClient client(TransfermanEmulatorConfig{});
   const std::pair<const char*, const char*> lines[] = {
       {"c010\n", "A010 0 0 0 0\r"},
       {"c009\n", "A009 0 0 0 0\r"},
@@ -78,7 +71,7 @@ TEST(EppendorfEmulator, AnswersWhatAutoInjGuiSends) {
 
 /// 2560 microsteps/s are 100 um/s, and the reply comes at the end.
 TEST(EppendorfEmulator, AGoToInMicrostepsHasTheirSpeeds) {
-  EppendorfClient client(transferman());
+  EppendorfClient client(TransfermanEmulatorConfig{});
   client.answers("C004\r");
   EXPECT_EQ(client.answers("C006 2560 0 0 2560 0 0\r", 0.5), "");
   EXPECT_NEAR(client.device->position().x(), 50e-6, 2.5e-6);

@@ -42,5 +42,24 @@ TEST(EppendorfProtocol, RefusesWhatIsNoPosition) {
   }
 }
 
+TEST(EppendorfProtocol, KnowsMicrosteps) {
+  EXPECT_EQ(eppendorfPosition(EppendorfUnit::kMicrostep), "C009");
+  EXPECT_EQ(eppendorfGoToMicrosteps({-256, 0, 512}, {25, 26, 27}), "C006 -256 0 512 25 26 27\rC009");
+  EXPECT_EQ(readEppendorfPosition("A009 -256 0 512 0", EppendorfUnit::kMicrostep)->coordinates,
+            Eigen::Vector3d(-256, 0, 512));
+  EXPECT_FALSE(readEppendorfPosition("A009 -256 0 512 0"));
+  EXPECT_FALSE(readEppendorfPosition("A010 -256 0 512 0", EppendorfUnit::kMicrostep));
+  for (const char* end : {"A006 0\r", "A006 63\r", "\nA006 0\r"}) EXPECT_TRUE(isEppendorfMoveEnd(end)) << end;
+  for (const char* other : {"A006\r", "A006 0", "A007 0\r", "xA006 0\r", "A006 12345\r"}) {
+    EXPECT_FALSE(isEppendorfMoveEnd(other)) << other;
+  }
+  for (const char* begins : {"", "A", "A0", "A00", "A006", "A006 ", "A006 6", "\nA006 63"}) {
+    EXPECT_TRUE(mayBeEppendorfMoveEnd(begins)) << begins;
+  }
+  for (const char* other : {"A009", "A01", "E", "A006 x", "A006 12345"}) {
+    EXPECT_FALSE(mayBeEppendorfMoveEnd(other)) << other;
+  }
+}
+
 }  // namespace
 }  // namespace microinjection
