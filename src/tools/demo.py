@@ -53,7 +53,8 @@ def parse_arguments():
                         help='wall: live nodes on wall time; virtual: all nodes in one process, many times faster, the same '
                         'bytes in each run, without rviz')
     parser.add_argument('--rig', default='sim',
-                        help='sim, a real one: eppendorf, mp285, scientifica, transferman, zaber; or emulated_ before its name (%(default)s)')
+                        help='sim, a real one: eppendorf, mp285, scientifica, sensapex, transferman, zaber; or emulated_ before '
+                        'its name (%(default)s)')
     parser.add_argument('--haptic', choices=('operator', 'external', 'none'), default='operator',
                         help='who moves the hand; a session without the operator ends with Ctrl-C')
     parser.add_argument('--motion', type=Path, default=MOTION,

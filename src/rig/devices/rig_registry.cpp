@@ -8,6 +8,8 @@
 #include "rig/devices/scientifica/scientifica_driver.h"
 #include "rig/devices/scientifica/scientifica_emulator.h"
 #include "rig/devices/scientifica/scientifica_wire.h"
+#include "rig/devices/sensapex/sensapex_driver.h"
+#include "rig/devices/sensapex/sensapex_emulator.h"
 #include "rig/devices/zaber/zaber_driver.h"
 #include "rig/devices/zaber/zaber_emulator.h"
 #include "rig/serial/udp_wire.h"
@@ -47,6 +49,7 @@ const std::vector<Rig>& rigs() {
       rig<EppendorfConfig, EppendorfDriver, EppendorfEmulator>("eppendorf", 19200),
       rig<Mp285Config, Mp285Driver, Mp285Emulator>("mp285", 9600),
       rig<ScientificaConfig, ScientificaDriver, ScientificaEmulator>("scientifica", 38400),
+      rig<SensapexConfig, SensapexDriver, SensapexEmulator>("sensapex", SensapexConfig::kBaud),
       rig<EppendorfConfig, EppendorfDriver, TransfermanEmulator>("transferman", 19200),
       rig<ZaberConfig, ZaberDriver, ZaberEmulator>("zaber", 115200),
   };

@@ -97,7 +97,7 @@ const std::vector<Bad> kBad = {
     {"micromanipulator", "{collision_margin: -1}", {"collision_margin = -1", "[0, inf)"}},
     {"micromanipulator", "{pipette_tilt: 2}", {"pipette_tilt = 2 rad", "[0, 1.2] rad"}},
     {"micromanipulator", "{device: {backlash: -1}}", {"device/backlash = -1", "[0, inf)"}},
-    {"micromanipulator", "{rig: moon}", {"rig = moon", "eppendorf, mp285, scientifica, transferman, zaber"}},
+    {"micromanipulator", "{rig: moon}", {"rig = moon", "eppendorf, mp285, scientifica, sensapex, transferman, zaber"}},
     {"micromanipulator", "{rig: mp285, device: {microsteps: [1, 0, 0]}}", {"device/microsteps"}},
     {"micromanipulator", "{rig: eppendorf, device: {speed: 1}}", {"device/speed = 1"}},
     {"micromanipulator", "{rig: scientifica, device: {version: 4}}", {"device/version = 4", "[2, 3]"}},

@@ -13,6 +13,8 @@
 #include "rig/devices/mp285/mp285_emulator.h"
 #include "rig/devices/scientifica/scientifica_driver.h"
 #include "rig/devices/scientifica/scientifica_emulator.h"
+#include "rig/devices/sensapex/sensapex_driver.h"
+#include "rig/devices/sensapex/sensapex_emulator.h"
 #include "rig/devices/zaber/zaber_driver.h"
 #include "rig/devices/zaber/zaber_emulator.h"
 
@@ -156,9 +158,31 @@ struct TestedScientifica
   }
 };
 
+struct TestedSensapex : TestedMoveByMove<SensapexDriver, SensapexConfig, SensapexEmulator, SensapexEmulatorConfig> {
+  static constexpr char kName[] = "sensapex";
+  static constexpr double kStep = 0.2e-6;     // m, a count
+  static constexpr double kMotorStep = 1e-9;  // m
+  static constexpr double kTold = 0.121e-6;   // m: a place is told as whole counts, and kept for 0.6 of one
+  static constexpr char kSilence[] = "silence:0.9";
+  static constexpr double kStopOnWire = 16 * 10.0 / SensapexConfig::kBaud;  // s
+  static constexpr double kSlower = 0.05;
+  static constexpr double kMostMoves = 4;  // on its fast line a short move begins as soon as the one before it is over
+  static constexpr double kEndIsSeen = 3;  // s: it does not tell that it stands
+  static double offUnderWay(double speed) { return 30e-3 * speed; }
+  static std::vector<EmulatorConfig> devices() {
+    std::vector<EmulatorConfig> all(2);
+    all[1].axes = 4;
+    all[1].tremble = 10e-9;
+    return all;
+  }
+  static std::vector<std::string> faults() { return TestedEppendorf::faults(); }
+};
+
 /// A new driver adds its name here.
-using AllTested = testing::Types<TestedZaber, TestedMp285, TestedEppendorf, TestedTransferman, TestedScientifica>;
-using AllMoveByMove = testing::Types<TestedMp285, TestedEppendorf, TestedTransferman, TestedScientifica>;
+using AllTested =
+    testing::Types<TestedZaber, TestedMp285, TestedEppendorf, TestedTransferman, TestedScientifica, TestedSensapex>;
+using AllMoveByMove =
+    testing::Types<TestedMp285, TestedEppendorf, TestedTransferman, TestedScientifica, TestedSensapex>;
 struct Names {
   template <typename Tested>
   static std::string GetName(int) {

@@ -9,6 +9,8 @@
 #include "rig/devices/mp285/mp285_emulator.h"
 #include "rig/devices/scientifica/scientifica_driver.h"
 #include "rig/devices/scientifica/scientifica_emulator.h"
+#include "rig/devices/sensapex/sensapex_driver.h"
+#include "rig/devices/sensapex/sensapex_emulator.h"
 
 namespace microinjection {
 namespace {
@@ -63,6 +65,26 @@ TEST(Fuzz, Transferman) {
   const double count = config.count();
   Fuzz<EppendorfDriver, EppendorfConfig>(config, std::make_shared<TransfermanEmulator>(), forgeDigits,
                                          allowedUnderWay(config), 1.01 * count, count, 0.01 * count)
+      .run();
+}
+
+/// Other numbers in a response: 24 of their 32 bits.
+std::string forgeIntegers(const std::string& reply, std::mt19937& random) {
+  std::string forged = reply;
+  for (std::size_t i = 20; i < forged.size(); ++i) {
+    if (i % 4 != 0) forged[i] = static_cast<char>(random());
+  }
+  return forged;
+}
+
+TEST(Fuzz, Sensapex) {
+  SensapexConfig config;
+  config.speed = kFuzzedSpeed;
+  config.reply_timeout = 0.05;
+  // Where it was stopped is known to what it moves in an exchange until it is read.
+  const double stopped = kFuzzedSpeed * 5e-3, goal = 0.2e-6 + 1e-9, told = 0.121e-6;
+  Fuzz<SensapexDriver, SensapexConfig>(config, std::make_shared<SensapexEmulator>(), forgeIntegers,
+                                       allowedUnderWay(config), stopped, goal, told)
       .run();
 }
 
