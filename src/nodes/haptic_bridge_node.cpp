@@ -102,7 +102,9 @@ void HapticBridgeNode::watch(const geometry_msgs::PoseStamped& hand, const ros::
   watched_ = now;
   if (hand.header.stamp.isZero()) return hand_.repeats.clear();
   const Eigen::Vector3d position = toVector(hand.pose.position);
-  const bool repeats = hand_poses_.step(position, dt);
+  // A device that leads nothing may lie on the table.
+  const bool leads = output_.state == Engagement::State::kFollow;
+  const bool repeats = hand_poses_.step(position, leads ? dt : 0);
   hand_.repeats = repeats ? "one pose, which the tremor of a hand must change" : "";
   const double step = (position - toVector(last_hand_.pose.position)).norm();
   const double passed = secondsBetween(last_hand_.header.stamp, hand.header.stamp);

@@ -108,7 +108,8 @@ class ConsoleAlarmsTest : public testing::Test {
   }
 
   VirtualSession session_{{"cell:=mouse_oocyte_pipette", "hand.device:=external", "hand.require_operator:=false",
-                           "camera.source:=sim", "display.markers:=false"}};
+                           "camera.source:=sim", "display.markers:=false",
+                           "overrides.haptic_bridge.timeouts.hand_unchanged:=0"}};
   ConsoleBench bench_{session_, "teleoperate"};
   LedHand hand_{session_};
 };

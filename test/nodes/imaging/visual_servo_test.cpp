@@ -122,5 +122,74 @@ TEST_F(VisualServoTest, AnOldImageIsNotUsed) {
   EXPECT_LT((needle_.place() - start).norm(), 1e-9);
 }
 
+enum class ImageFault { kStops, kRepeats, kRepeatsOld, kLate, kBlack, kWithoutStamp };
+void PrintTo(ImageFault fault, std::ostream* out) {
+  static const char* const names[] = {"Stops", "Repeats", "RepeatsOld", "IsLate", "IsBlack", "HasNoStamp"};
+  *out << names[static_cast<int>(fault)];
+}
+
+/// While the image leads the needle, the camera fails.
+class ImageFaultTest : public VisualServoTest, public testing::WithParamInterface<ImageFault> {
+ protected:
+  void strike() {
+    boost::shared_ptr<const sensor_msgs::Image> first;
+    session_.executive().network().alter(
+        "/microscope/image_raw", [first, fault = GetParam()](Passage passage) mutable -> std::vector<Passage> {
+          const auto original = boost::static_pointer_cast<const sensor_msgs::Image>(passage.message);
+          if (!first) first = original;
+          const bool is_old = fault == ImageFault::kRepeats || fault == ImageFault::kRepeatsOld;
+          const auto image = boost::make_shared<sensor_msgs::Image>(is_old ? *first : *original);
+          if (fault == ImageFault::kStops) return {};
+          if (fault == ImageFault::kRepeats) image->header.stamp = original->header.stamp;
+          if (fault == ImageFault::kLate) passage.delay = 0.6;
+          if (fault == ImageFault::kBlack) std::fill(image->data.begin(), image->data.end(), 0);
+          if (fault == ImageFault::kWithoutStamp) image->header.stamp = ros::Time();
+          passage.message = image;
+          return {passage};
+        });
+  }
+  std::string reason() const {
+    switch (GetParam()) {
+      case ImageFault::kRepeats:
+      case ImageFault::kBlack:
+        return "the camera repeats its last image";
+      case ImageFault::kWithoutStamp:
+        return "it has no stamp";
+      case ImageFault::kLate:
+        return "s old";
+      case ImageFault::kRepeatsOld:
+        return "its stamp is that of the last one";
+      case ImageFault::kStops:
+        break;
+    }
+    return "is stale";
+  }
+};
+
+TEST_P(ImageFaultTest, HoldsTheNeedleAndIsSaid) {
+  needle_.enable();
+  cell_microinjection::GoToPixelGoal goal;
+  goal.x = kX;
+  goal.y = kY;
+  action_.send(goal);
+  const Eigen::Vector3d start = needle_.place();
+  ASSERT_TRUE(session_.until([&] { return (needle_.place() - start).norm() > 1e-6; }, 5));
+  session_.diagnostics().clear();
+  strike();
+  needle_.poses().clear();
+  session_.run(1.5);  // the step of the last image, at 50 um/s
+  const Eigen::Vector3d rests = needle_.place();
+  session_.run(2);
+  EXPECT_LT((needle_.place() - rests).norm(), 0.02e-6) << "it goes on without an image";
+  EXPECT_GT(needle_.lowest(), start.z() - 0.1e-6) << "it goes to the cell";
+  EXPECT_FALSE(action_.ended() && action_.result()->success);
+  EXPECT_TRUE(session_.diagnostics().ever("vision: images", reason())) << session_.diagnostics().text("vision: images");
+}
+
+INSTANTIATE_TEST_SUITE_P(Matrix, ImageFaultTest,
+                         testing::Values(ImageFault::kStops, ImageFault::kRepeats, ImageFault::kRepeatsOld,
+                                         ImageFault::kLate, ImageFault::kBlack, ImageFault::kWithoutStamp),
+                         testing::PrintToStringParamName());
+
 }  // namespace
 }  // namespace microinjection
