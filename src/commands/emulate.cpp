@@ -36,7 +36,7 @@ Faults: KIND[:VALUE][@TIME]; TIME in s since the start, default 0
   deaf:N       the next N bytes to the device are lost
   garble:N     the next N bytes from the device arrive with all bits inverted
   error:CODE   the reply to the next command is this error: MP-285: 0, or a sum of 1, 2, 4, 8;
-               Eppendorf, Scientifica: a number from 0 to 999;
+               Eppendorf, Scientifica, Sensapex: a number from 0 to 999;
                Zaber: BADDATA, AGAIN, ... (rejection), FS, WT, ... (a warning flag, until it is cleared);
                all: RESET (switched off and on: it counts from 0 at its position, without a reference position,
                with the factory settings)

@@ -89,8 +89,10 @@ std::optional<std::string> LayerSection::textOf(const std::string& key) {
 }
 
 void LayerSection::path(const std::string& key, std::string& value, const Words& words) {
-  if (const std::optional<std::string> read = textOf(key))
-    value = isOneOf(words, *read) ? *read : absolutePath(*read, folder_);
+  if (const std::optional<std::string> read = textOf(key)) {
+    const bool in_network = read->rfind("udp:", 0) == 0;
+    value = in_network || isOneOf(words, *read) ? *read : absolutePath(*read, folder_);
+  }
 }
 
 void LayerSection::existingFile(const std::string& key, std::string& value, const Words& words) {

@@ -28,7 +28,7 @@ class LayerSection {
   void integer(const std::string& key, int& value, const Range& range);
   void numbers(const std::string& key, std::array<double, 6>& value);
 
-  /// A path that need not be there. `words` stand for themselves.
+  /// A path that need not be there. `words` stand for themselves, and so does an address in the network (udp:...).
   void path(const std::string& key, std::string& value, const Words& words);
   void existingFile(const std::string& key, std::string& value, const Words& words);
   /// NAME of package/`below`/NAME.yaml, or a path.

@@ -68,6 +68,9 @@ TEST_F(SessionPlanTest, AnEmulatedRigIsAProcessOrInside) {
   EXPECT_EQ(at(plan({"rig.name:=zaber", "rig.port:=/dev/ttyUSB0"}), "micromanipulator", "device/port/path"),
             "/dev/ttyUSB0");
   EXPECT_EQ(at(plan({"rig.name:=zaber"}), "micromanipulator", "device/port/path"), "/tmp/emulated_zaber");
+  EXPECT_EQ(
+      at(plan({"rig.name:=sensapex", "rig.port:=udp:169.254.10.1:55555"}), "micromanipulator", "device/port/path"),
+      "udp:169.254.10.1:55555");
   const SessionPlan own = plan({"rig.name:=external", "rig.namespace:=/my_rig", "rig.port:=/dev/ttyUSB0"});
   EXPECT_EQ(at(own, "micromanipulator", "rig"), "external");
   EXPECT_EQ(at(own, "micromanipulator", "device/namespace"), "/my_rig");
