@@ -47,9 +47,8 @@ class DamagedLine : public DeviceEmulator {
 /// With shorter time-outs, so that it takes less virtual time.
 YAML::Node impatient(const std::string& name) {
   YAML::Node file = injectorFile(name), serial = file["serial"];
-  const bool slow = name == "arduino";  // it needs 0.2 s for a command
-  const double timeout = slow ? 0.4 : 0.08;
-  serial["quiet"] = slow ? 0.15 : 0.03;
+  const double timeout = 0.08;
+  serial["quiet"] = 0.03;
   serial["query_period"] = 0.02;
   for (const char* command : {"begin", "pulse", "verify", "balance", "stop"}) {
     for (YAML::Node exchange : serial[command]) exchange["timeout"] = timeout;
