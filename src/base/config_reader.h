@@ -38,7 +38,8 @@ class ConfigReader {
   void integer(const std::string& key, int& value, const Range& range = Range::finite(), Presence = kOptional);
   void boolean(const std::string& key, bool& value, Presence = kOptional);
   void text(const std::string& key, std::string& value, Presence = kOptional);
-  /// The path of a file or folder in a node's parameters: absolute, from the home folder (~/), or, where it is optional,
+  /// The path of a file or folder in a node's parameters: absolute, from the home folder (~/), or, where it is
+  /// optional,
   /// "". A relative one is an error: it would be meant from the folder of whoever wrote it, and a node that roslaunch
   /// starts would take it from ROS's own folder (~/.ros).
   void path(const std::string& key, std::string& value, Presence = kOptional);

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Strangers send each node of a live session what nobody should, on every topic that it listens to: at least 250 kinds
-a topic, on eight topics at a time. No node ends, none publishes a number that is not finite, and the loop closes again,
+a topic, on sixteen topics at a time. No node ends, none publishes a number that is not finite, and the loop closes again,
 by itself or when it is enabled again after it has said what it waits for. Usage: PART, of PARTS"""
 
 import math
@@ -32,7 +32,7 @@ FARTHER = 1.5 * TIMEOUT * Hand.SPEED * 1e-3  # m, of the needle, which is a thou
 PAUSE = 0.002  # s between two messages on a topic, so that none is lost in a queue
 warnings.simplefilter("ignore", SyntaxWarning)  # rospy's, of a publisher without a queue
 sys.setswitchinterval(1e-4)  # s, a fiftieth: who publishes waits for those that listen each time that it has written
-GROUP = 8  # topics that are attacked together; the loop is looked at after each group
+GROUP = 16  # topics that are attacked together; the loop is looked at after each group
 
 
 def classes(kind):

@@ -58,7 +58,8 @@ Eigen::Vector3d MoveByMove::extrapolatedPosition(double at) const {
 }
 
 std::optional<ManipulatorDevice::Reading> MoveByMove::reading() const {
-  if (!position_ || !positionsValid()) return std::nullopt;
+  if (!position_ || !positionsValid() || (settled_ && filter_.isContradicted())) return std::nullopt;
+  if (unconfirmed_ || isUnconfirmed()) return std::nullopt;
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   if (timeLeft() > 0 && time() > move_->begin) {
     velocity = (move_->to - move_->from).cwiseProduct(counts()) / move_->duration;
@@ -103,23 +104,46 @@ bool MoveByMove::isOutdated() const {
   return !isAt(move_->goal, goalPosition());
 }
 
+double MoveByMove::besideTheLine(const Eigen::Vector3d& position) const {
+  if (!line_) return 0;
+  const Eigen::Vector3d way = (line_->goal - line_->begin).cwiseProduct(counts());
+  const Eigen::Vector3d here = (position - line_->begin).cwiseProduct(counts());
+  const double length = way.norm();
+  if (length == 0) return here.norm();
+  const double along = std::clamp(here.dot(way) / length, 0.0, length);
+  return (here - way * (along / length)).norm();
+}
+
+bool MoveByMove::faultBesideTheLine(const Eigen::Vector3d& position, double margin) {
+  const double beside = besideTheLine(position);
+  if (beside <= margin) return false;
+  raiseFault("it is " + std::to_string(std::lround(beside * 1e6)) +
+             " um beside the straight way to its goal: the line changes bytes, or something else moves the device; "
+             "check cable, port and what holds it, then enable");
+  return true;
+}
+
 void MoveByMove::begin(bool /*lost*/) {
   filter_.clear();
   settled_ = false;
-  origin_lost_ = origin_lost_ && !clearing();
+  if (!clearing()) return;
+  origin_lost_ = interrupted_ = false;  // wherever it is found, from there on
 }
 
 void MoveByMove::onStopSent() {
   if (position_) position_ = extrapolatedPosition(time() + stop_bytes_ * common_.byteTime());
+  interrupted_ = interrupted_ || move_;
+  unconfirmed_ = unconfirmed_ || isUnconfirmed();
   move_.reset();
   settled_ = false;
-  maxValidityTime(common_.reply_timeout + longest_move_ * common_.byteTime() + recoveryTime());
+  maxValidityTime(2 * (common_.reply_timeout + longest_move_ * common_.byteTime()) + recoveryTime());
 }
 
 /// Records the position at rest until the next reading.
 void MoveByMove::rest(const Eigen::Vector3d& position) {
   position_ = position;
   move_.reset();
+  interrupted_ = unconfirmed_ = false;
   origin_monitor_.setAtRest(position);
   settings_lost_ = false;
   next_rest_reading_ = time() + common_.rest_reading_interval;

@@ -34,7 +34,10 @@ struct MoveByMoveConfig {
 
 /// A manipulator that executes one straight move after another. Set-points become short moves, each
 /// to the newest set-point. Between readings the position is extrapolated along the move, never
-/// past its end.
+/// past its end, and only until it is due: a position that is no longer confirmed is none.
+///
+/// A line can change bytes of a command, and no protocol here has a checksum. So the device is
+/// checked against the straight line to its goal: a reading beside that line is a fault.
 ///
 /// A device that reports an impossible position was switched off and on, and counts from 0 at its
 /// present position. That is a fault, and no position is reported until clearFault() accepts the
@@ -57,6 +60,11 @@ class MoveByMove : public SerialManipulator {
     Eigen::Vector3d goal;      ///< counts, final goal; the move may be a part of the path
     bool follows;              ///< a short move towards a set-point
     double begin, duration;    ///< s, of the rest of the move since `from` was read
+  };
+
+  /// The straight way to the goal, which may be travelled in parts, and the start of its next part.
+  struct Line {
+    Eigen::Vector3d begin, goal, next;  ///< counts
   };
 
   /// `longest_move`: bytes for a move, including replies.
@@ -85,7 +93,16 @@ class MoveByMove : public SerialManipulator {
   double fastestAlong(const Eigen::Vector3d& displacement) const;
   Eigen::Vector3d extrapolatedPosition(double time) const;
   double timeLeft() const { return move_ ? move_->begin + move_->duration - time() : 0; }
+  bool isUnderWay() const { return move_ && time() > move_->begin; }  ///< a move was sent, and its end not read yet
   bool isOutdated() const;
+  /// Of a position during the move, or where the device stands after an interrupted one: distance
+  /// (m) from the line to the goal. 0 without a line.
+  double besideTheLine(const Eigen::Vector3d& position) const;
+  /// Raises a fault if the device is beside the line, by more than `margin` (m). It is not moved
+  /// again: the same bytes would be changed again.
+  bool faultBesideTheLine(const Eigen::Vector3d& position, double margin);
+  /// The position in a move may be extrapolated for `duration` (s) from now.
+  void extrapolateFor(double duration) { extrapolated_until_ = time() + duration; }
   void rest(const Eigen::Vector3d& position);
   bool isNewZero(const Eigen::Vector3d& position, double margin) const;
   bool detectNewOrigin(const Eigen::Vector3d& position, double outside, bool new_zero, double margin);
@@ -101,11 +118,17 @@ class MoveByMove : public SerialManipulator {
   double next_rest_reading_ = 0;             ///< s
   std::optional<Eigen::Vector3d> position_;  ///< counts, the last valid one or where the device was stopped
   std::optional<Move> move_;                 ///< in progress, or ended and not read yet
+  std::optional<Line> line_;                 ///< of the last move
+  bool interrupted_ = false;                 ///< the last move was, and the device has not been found at rest since
   int tries_ = 0;                            ///< moves that missed their goal
   int malformed_ = 0;
 
  private:
   double stop_bytes_, longest_move_;
+  bool isUnconfirmed() const { return isUnderWay() && (time() > extrapolated_until_ || filter_.isContradicted()); }
+
+  double extrapolated_until_ = 0;  // s
+  bool unconfirmed_ = false;       // the position at the last stop was not known, and has not been read since
 };
 
 }  // namespace microinjection

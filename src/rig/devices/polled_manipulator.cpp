@@ -48,6 +48,11 @@ ManipulatorAbilities PolledManipulator::abilities() const {
   return abilities;
 }
 
+/// A reply and a reading, or two readings, and some reserve.
+double PolledManipulator::extrapolationTime() const {
+  return kExtrapolatedMotion + 2 * (dialect_.longest_reading * common_.byteTime() + answer_time_);
+}
+
 /// Silence after a failed exchange, the setup of a new session, and one turn as reserve.
 double PolledManipulator::recoveryTime() const {
   constexpr int kLineAndReply = 20, kReadings = 4;  // bytes of a setup line; readings until it rests
@@ -85,6 +90,12 @@ void PolledManipulator::exchange(const std::string& bytes) {
     const std::string reply = !line.empty() && line[0] == '\n' ? line.substr(1) : line;
     handle(reply);
     if (!exchanging()) return;
+  }
+  // In motion it is stopped as soon as a reading is overdue, and asked again at rest.
+  if (exchange_ && exchange_->kind != Kind::kMove && isUnderWay() && overdue_ < kMostOverdue &&
+      activeTime() > exchange_->sent + extrapolationTime()) {
+    ++overdue_;
+    return stopUnheard();
   }
   if (exchange_ && activeTime() > exchange_->due) return exchangeFailed("no reply to \"" + exchange_->line + "\"");
   if (!exchange_) next();
@@ -175,14 +186,22 @@ void PolledManipulator::updatePosition(const Eigen::Vector3d& position) {
   const double under_way = reading_margin_ / count() + kExtrapolatedMotion * speed;
   // At rest, or before rest is confirmed, only four equal readings can change the position.
   const double tolerance = move_ ? under_way : kSame;
-  if (!filter_.accept(position, expected, tolerance, tolerance) || !reply_times_.measured()) return;  // requested again
+  const bool on_line = !move_ || besideTheLine(position) <= reading_margin_;
+  if (!filter_.accept(position, on_line ? expected : nowhere, tolerance, tolerance) || !reply_times_.measured()) {
+    if (move_ && filter_.isContradicted()) contradicted(position);
+    return;  // requested again
+  }
   const bool elsewhere = !((position - expected).cwiseAbs().maxCoeff() <= tolerance);
   const bool jumped = move_ && elsewhere && position.isZero(kSame);
   const bool new_zero = jumped || ((!move_ || settings_lost_) && isNewZero(position, reading_margin_));
   const bool by_hand = dialect_.moved_by_hand && settled_ && !move_;
   if (detectNewOrigin(position, by_hand ? 0 : origin_monitor_.outside(position, counts()), new_zero, reading_margin_))
     return;
-  if (move_) return checkMove(position);
+  if (move_) {
+    extrapolateFor(extrapolationTime());
+    return checkMove(position);
+  }
+  if (interrupted_ && faultAstray(position)) return;
   if (settled_) {
     if (elsewhere) forgetSettings();
     return rest(position);
@@ -192,13 +211,33 @@ void PolledManipulator::updatePosition(const Eigen::Vector3d& position) {
   confirmPositions();
 }
 
+/// Handles a second reading in a row that is not where the move should be. A device that goes
+/// elsewhere must be stopped now. For one that stands, on its line or at the 0 of a device that was
+/// switched off, there is time until four readings agree.
+void PolledManipulator::contradicted(const Eigen::Vector3d& position) {
+  if (position.isZero(kSame)) return;
+  if (detectNewOrigin(position, origin_monitor_.outside(position, counts()), false, reading_margin_)) return;
+  faultAstray(position);
+}
+
+/// A limit switch that stops one axis is told by its name.
+bool PolledManipulator::faultAstray(const Eigen::Vector3d& position) {
+  const std::string reason = notArrivedReason();
+  if (reason.empty() || besideTheLine(position) <= reading_margin_) {
+    return faultBesideTheLine(position, reading_margin_);
+  }
+  raiseFault(kNotArrived + reason);
+  return true;
+}
+
 void PolledManipulator::request(Kind kind, const std::string& line) {
   const double sent = activeTime() + static_cast<double>(line.size() + 1) * common_.byteTime();
   const double wire = static_cast<double>(std::max(dialect_.longest_reading, line.size())) * common_.byteTime();
   const bool may_stop = kind == Kind::kSettingCheck || kind == Kind::kStop || kind == Kind::kSetup;
   const double more = may_stop ? dialect_.stop_duration : 0;
   exchange_ = Exchange{kind, line, sent + wire + common_.reply_timeout + more, sent};
-  if (settled_ && !filter_.isImplausible()) validityTime(exchange_->due - activeTime() + recoveryTime());
+  const double once_more = isUnderWay() ? common_.reply_timeout : 0;  // it may be stopped before
+  if (settled_ && !filter_.isImplausible()) validityTime(exchange_->due - activeTime() + once_more + recoveryTime());
   send(line + "\r");
 }
 

@@ -98,10 +98,9 @@ class PolledManipulator : public MoveByMove {
     std::optional<double> at_rest_since;  // s of activeTime(), since the device reports rest
   };
 
-  /// A path that may be travelled in parts, and the start of its next part.
-  struct Line {
-    Eigen::Vector3d begin, goal, next;  // counts
-  };
+  double extrapolationTime() const;  // s, between two readings of a move, at the most
+  static constexpr int kMostOverdue = 3;
+  static constexpr char kNotArrived[] = "the move does not arrive: ";
 
   void handle(const std::string& reply);
   void handleSetupReply(const std::string& reply);
@@ -109,6 +108,8 @@ class PolledManipulator : public MoveByMove {
   void handleMotion(const std::string& reply);
   void handlePosition(const std::string& reply);
   void updatePosition(const Eigen::Vector3d& position);
+  void contradicted(const Eigen::Vector3d& position);
+  bool faultAstray(const Eigen::Vector3d& position);
   Eigen::Vector3d pointOnPath(const Eigen::Vector3d& from, double share) const;
   void checkMove(const Eigen::Vector3d& position);
   void handleMissedGoal(const Eigen::Vector3d& position);
@@ -132,8 +133,8 @@ class PolledManipulator : public MoveByMove {
   int lost_setting_replies_ = 0;  // successive replies without the setting
   bool check_setting_ = false, stop_requested_ = false, motion_requested_ = false;
   double next_move_ = 0;  // s
+  int overdue_ = 0;       // readings under way, since a move has arrived
   Progress progress_;
-  std::optional<Line> line_;
 };
 
 }  // namespace microinjection

@@ -27,6 +27,7 @@ void PolledManipulator::sendMove() {
   progress_.end = move_->begin + move_->duration;
   progress_.overdue = activeTime() + 1.25 * move_->duration + kMoveAllowance;
   request(Kind::kMove, line);
+  extrapolateFor(move_->begin - time() + extrapolationTime());
 }
 
 void PolledManipulator::nextOfMove() {
@@ -106,7 +107,7 @@ void PolledManipulator::checkMove(const Eigen::Vector3d& position) {
   }
   if (at_rest) {
     next_move_ = progress_.next;
-    tries_ = 0;
+    tries_ = overdue_ = 0;
     return rest(position);
   }
   const bool rests_elsewhere = progress_.at_rest_since && activeTime() > *progress_.at_rest_since + kSettleTime;
@@ -130,7 +131,7 @@ void PolledManipulator::handleMissedGoal(const Eigen::Vector3d& position) {
   move_.reset();
   if (++tries_ < kTries) return stopFirst();
   const std::string reason = notArrivedReason();
-  raiseFault("the move does not arrive: " + (reason.empty() ? "it was interrupted" : reason));
+  raiseFault(kNotArrived + (reason.empty() ? "it was interrupted" : reason));
 }
 
 }  // namespace microinjection

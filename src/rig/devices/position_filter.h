@@ -24,6 +24,8 @@ class PositionFilter {
     return doubtful_ == 0;
   }
   bool isImplausible() const { return doubtful_ > 0; }
+  /// More than one reading in a row: hardly a reply that was damaged.
+  bool isContradicted() const { return doubtful_ > 1; }
   void clear() { doubtful_ = 0; }
 
  private:

@@ -113,6 +113,11 @@ void SerialManipulator::beginSession(double quiet) {
   quiet_ = quiet;
 }
 
+void SerialManipulator::stopUnheard() {
+  lost_ = true;
+  beginSession(link_.quiet_after_loss);
+}
+
 void SerialManipulator::stopFirst() { beginSession(link_.quiet_in_step); }
 
 void SerialManipulator::connectionLost() {

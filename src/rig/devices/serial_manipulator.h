@@ -102,6 +102,7 @@ class SerialManipulator : public ManipulatorDevice {
   void confirmPositions();                         ///< all positions are valid, and all axes at rest
   void exchangeSucceeded();                        ///< an exchange has succeeded
   void stopFirst();                                ///< starts a new session and continues to the goal
+  void stopUnheard();                              ///< the same, for a device of which nothing is known any more
   void exchangeFailed(const std::string& reason);  ///< an exchange has failed: stops and starts a new session
   void raiseFault(const std::string& reason);      ///< stops; nothing moves until clearFault()
 

@@ -7,8 +7,10 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/serial_port.hpp>
 #include <boost/asio/write.hpp>
+#include <cerrno>
 #include <cstring>
 
+#include "rig/serial/line_mode.h"
 #include "rig/serial/low_latency.h"
 #include "rig/serial/stop_guard.h"
 
@@ -66,6 +68,10 @@ struct SerialPort::Line {
     set(Port::flow_control(hardware ? Port::flow_control::hardware : Port::flow_control::none));
     if (error)
       return config.path + ": " + std::to_string(config.baud) + " baud, " + config.frame() + ": " + error.message();
+    termios mode{};
+    if (tcgetattr(port.native_handle(), &mode) != 0) return config.path + ": " + std::strerror(errno);
+    if (const std::string changes = whatChangesBytes(mode); !changes.empty())
+      return config.path + ": the system keeps a mode that changes bytes: " + changes;
     requestLowLatency(port.native_handle());
     tcflush(port.native_handle(), TCIFLUSH);
     receive();

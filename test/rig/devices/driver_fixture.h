@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -64,6 +65,9 @@ struct TestedMoveByMove {
   static constexpr double kEndIsSeen = 1;    // s, until a move that was interrupted is begun again
   static constexpr double kMostMoves = 1.6;  // of a stream, in a turn as it is told
   static constexpr int kMovesAtMost = 2;     // in the place of one that is disturbed
+  static constexpr bool kInParts = false;    // the way to a goal
+  static constexpr double kLongestPart = std::numeric_limits<double>::infinity();  // s
+  static constexpr double kPause = 0;                                              // s, between two parts
 
   static Config config() {
     Config config;
@@ -78,6 +82,9 @@ struct TestedMoveByMove {
 
 struct TestedMp285 : TestedMoveByMove<Mp285Driver, Mp285Config, Mp285Emulator, Mp285EmulatorConfig> {
   static constexpr char kName[] = "mp285";
+  static constexpr bool kInParts = true;
+  static constexpr double kLongestPart = 0.075;       // s
+  static constexpr double kPause = 0.07;              // s: 31 bytes, and three answers and pauses
   static constexpr double kStep = 0.04e-6;            // m, a microstep
   static constexpr double kMotorStep = kStep;         // m
   static constexpr double kTold = 0.1 * kStep;        // m

@@ -5,6 +5,8 @@
 namespace microinjection {
 namespace {
 
+constexpr double kLargestError = 0.2 * 25e-6;  // m, of a position that is told: 0.2 s of the ramp
+
 template <typename Tested>
 class LostTouchTest : public DriverTest<Tested> {
  protected:
@@ -32,10 +34,13 @@ TYPED_TEST(LostTouchTest, ASilentDevicesPositionIsNotToldForLong) {
   auto& rig = *this->rig_;
   ASSERT_TRUE(rig.driver().reading());
   const double from = rig.time();
-  while (rig.driver().reading() && rig.time() < from + 5) this->stream(1e-3);
+  const auto isReady = [&] { return rig.driver().state() == ManipulatorDevice::State::kReady; };
+  while (isReady() && rig.time() < from + 5) {
+    this->stream(1e-3);
+    if (rig.driver().reading()) EXPECT_LT((rig.read() - rig.place()).norm(), kLargestError);
+  }
   EXPECT_LT(rig.time() - from, TypeParam::kLongestBlind);
-  EXPECT_EQ(rig.driver().state(), ManipulatorDevice::State::kDisconnected);
-  EXPECT_NE(rig.driver().reason().find("position"), std::string::npos) << rig.driver().reason();
+  EXPECT_NE(rig.driver().reason(), "");
   this->stream(5, [&] { EXPECT_FALSE(rig.driver().reading()); });
   EXPECT_EQ(rig.driver().state(), ManipulatorDevice::State::kFault);
 }
@@ -59,7 +64,8 @@ TYPED_TEST(LostTouchTest, OneLostAnswerIsGotOver) {
   auto& rig = *this->rig_;
   this->stream(2, [&] {
     ASSERT_EQ(rig.driver().state(), ManipulatorDevice::State::kReady) << rig.driver().reason();
-    ASSERT_TRUE(rig.driver().reading());
+    // None while the answer is overdue.
+    if (rig.driver().reading()) EXPECT_LT((rig.read() - rig.place()).norm(), kLargestError);
   });
   ASSERT_TRUE(rig.runUntilArrived());
   expectNear(rig.place(), this->goal_, TypeParam::kStep);

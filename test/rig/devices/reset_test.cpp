@@ -64,7 +64,7 @@ TYPED_TEST(ResetTest, UnderWayItIsAFault) {
       this->startAt(kPlace);
       this->rig_->driver().moveTo(goal, 0.2e-3);
       this->rig_->run(after);
-      ASSERT_TRUE(this->rig_->device().moves());
+      ASSERT_TRUE(this->rig_->runUntil([&] { return this->rig_->device().moves(); }, 0.1)) << "the next part";
       this->rig_->inject("error:RESET");
       this->expectNotBelieved();
     }
@@ -128,7 +128,7 @@ TYPED_TEST(ResetTest, WhatIsSetIsSaidAgainAfterAJump) {
   rig.driver().moveTo(from + way, 0.05e-3);
   ASSERT_TRUE(rig.runUntil([&] { return rig.device().moves(); }, 1));
   const double begin = rig.time();
-  ASSERT_TRUE(rig.runUntil([&] { return !rig.device().moves(); }, 5));
+  ASSERT_TRUE(rig.runUntilArrived());
   EXPECT_GT(rig.time() - begin, 0.99 * way.norm() / 0.05e-3);
   expectNear(rig.place(), from + way, TypeParam::kStep);
 }

@@ -110,7 +110,9 @@ class GuardedRigTest : public testing::Test {
 TYPED_TEST_SUITE(GuardedRigTest, AllTested, Names);
 
 TYPED_TEST(GuardedRigTest, ACycleThatDoesNotStepLeavesNothingInMotion) {
-  ASSERT_TRUE(this->until([&] { return !this->moves(); }, false));
+  const double from = this->bench_->time();
+  // The short move of some devices ends before the guard stops them.
+  ASSERT_TRUE(this->until([&] { return !this->moves() && this->bench_->time() > from + 0.5; }, false));
   const Eigen::Vector3d place = this->bench_->device().position();
   this->driver_->moveTo(-this->kFar, 1e-3);  // asked for before it can know
   this->expectRestUntilCommanded("the program stood still for more than 0.2 s; the stop guard stopped the device",

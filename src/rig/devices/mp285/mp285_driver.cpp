@@ -9,8 +9,10 @@ namespace {
 constexpr double kFineLimit = 1310;    // um/s
 constexpr double kBytePause = 0.04;    // s, longest pause between two bytes of a reply (USB adapters collect for 16 ms)
 constexpr double kCoarseStep = 5;      // microsteps, resolution of a coarse move
+constexpr double kLongestPart = 1.5;   // segment_time, duration of a part of the way; 2 towards a set-point
 constexpr double kMargin = 5e-6;       // m, from the ends of a move within which it may still be moving
 constexpr int kSlowestShortMove = 20;  // um/s, of a short move
+constexpr int kReadingBytes = 15;      // a request of the position and its reply
 constexpr std::size_t kMoveBytes = 19;  // for a move, sometimes with a speed, including replies
 
 }  // namespace
@@ -22,6 +24,7 @@ Mp285Config Mp285Config::read(ConfigReader& reader) {
   if (((config.microsteps.array() > 0) && (config.microsteps.array() < 1e-9)).any()) {
     reader.error("microsteps", "each must be 0 (by the device's status) or from 1e-9 to 1e-6 m");
   }
+  reader.number("move_allowance", config.move_allowance, Range::closed(0.02, 2));
   reader.number("command_pause", config.command_pause, Range::nonNegative());
   reader.number("half_command_time", config.half_command_time, Range::positive());
   return config;
@@ -30,7 +33,7 @@ Mp285Config Mp285Config::read(ConfigReader& reader) {
 Mp285Driver::Mp285Driver(const Mp285Config& config, std::unique_ptr<Wire> wire)
     : MoveByMove(config, std::move(wire),
                  {"MP-285", std::string(1, kMp285Stop),
-                  std::max(config.answer_time, kHeldReply) + 6 * config.byteTime() + 5e-3,
+                  config.answer_time + kHeldReply + kReadingBytes * config.byteTime() + 5e-3,
                   config.half_command_time + 14 * config.byteTime()},
                  kMoveBytes),
       config_(config) {}
@@ -41,6 +44,7 @@ ManipulatorAbilities Mp285Driver::abilities() const {
   const double turn = 35 * config_.byteTime() + 3 * (answer_time_ + config_.command_pause) + config_.segment_time;
   ManipulatorAbilities abilities = abilitiesWith(turn);
   abilities.device = "Sutter MP-285";
+  abilities.reading_interval += config_.segment_time;  // the longest move towards a set-point takes two of them
   return abilities;
 }
 
@@ -48,7 +52,7 @@ ManipulatorAbilities Mp285Driver::abilities() const {
 /// turn as reserve.
 double Mp285Driver::recoveryTime() const {
   return config_.half_command_time + kBytePause + 105 * config_.byteTime() +
-         5 * (answer_time_ + config_.command_pause) + abilities().reading_interval;
+         5 * (answer_time_ + config_.command_pause) + abilities().command_interval;
 }
 
 void Mp285Driver::begin(bool lost) {
@@ -75,7 +79,8 @@ void Mp285Driver::exchange(const std::string& bytes) {
     if (const auto reply = parser_.feed(bytes, silent)) {
       handle(*reply);
     } else if (activeTime() > exchange_->due) {
-      exchangeFailed("no reply, or an incomplete one");
+      exchangeFailed(exchange_->kind == Kind::kMove ? "a move has not ended in time (move_allowance)"
+                                                    : "no reply, or an incomplete one");
     } else if (exchange_->kind == Kind::kMove && isOutdated()) {
       stopFirst();
     }
@@ -94,10 +99,14 @@ void Mp285Driver::request(Kind kind, const std::string& bytes, double more_time)
                                          : Expected::kDone);
   const double reply_bytes = kind == Kind::kStatus ? 33 : 13;
   const double sent = activeTime() + static_cast<double>(bytes.size()) * config_.byteTime();
-  exchange_ = Exchange{kind, sent + reply_bytes * config_.byteTime() + config_.reply_timeout + more_time, sent};
+  const bool moves = kind == Kind::kMove;
+  const double reply =
+      moves ? config_.byteTime() + kHeldReply + answer_time_ : reply_bytes * config_.byteTime() + config_.reply_timeout;
+  exchange_ = Exchange{kind, sent + reply + more_time, sent};
   // The device sends nothing while moving or unrequested. So the last request must be answered, or
   // else, once, the one after it. Doubtful readings are repeated, but do not extend the validity.
-  if (settled_ && !filter_.isImplausible()) validityTime(exchange_->due - activeTime() + recoveryTime());
+  const double once_more = moves ? config_.reply_timeout + kMoveAllowance : 0;
+  if (settled_ && !filter_.isImplausible()) validityTime(exchange_->due - activeTime() + once_more + recoveryTime());
   send(bytes);
 }
 
@@ -138,6 +147,7 @@ void Mp285Driver::handle(const Mp285Reply& reply) {
       break;
     case Kind::kMove:
       reading_due_ = true;
+      extrapolateFor(2 * config_.command_pause + kReadingBytes * config_.byteTime() + kHeldReply + answer_time_);
       break;
   }
 }
@@ -188,6 +198,7 @@ void Mp285Driver::handlePosition(const Mp285Position& reading) {
   const double outside = move_ ? origin_monitor_.outside(position, counts()) : 0;
   if (detectNewOrigin(position, outside, isNewZero(position, kMargin), kMargin)) return;
   if (settled_ && !move_ && elsewhere) forgetSettings();
+  if ((move_ || interrupted_) && faultBesideTheLine(position, kMargin)) return;
   const bool missed = move_ && (position - move_->to).cwiseAbs().maxCoeff() > tolerance;
   rest(position);
   reading_due_ = false;
@@ -246,9 +257,8 @@ void Mp285Driver::nextTowardsGoal() {
   }
   const double rate = speed.um_per_s * 1e-6 / nominal_microstep_;  // microsteps/s
   Move move{*position_, goal_position, goal_position, goal()->follows, 0, 0};
-  const double longest = rate * 2 * config_.segment_time;
-  if (move.follows && displacement.norm() > longest)
-    move.to = (move.from + displacement.normalized() * longest).array().round();
+  const double longest = std::max(rate * (goal()->follows ? 2 : kLongestPart) * config_.segment_time, 1.0);
+  if (displacement.norm() > longest) move.to = (move.from + displacement.normalized() * longest).array().round();
   move.duration = (move.to - move.from).norm() / rate;
   Mp285Position position;
   for (int i = 0; i < 3; ++i) {
@@ -256,10 +266,14 @@ void Mp285Driver::nextTowardsGoal() {
     position[i] = static_cast<std::int32_t>(move.to[i]);
   }
   move.begin = time() + 14 * config_.byteTime();
+  if (!line_ || goal()->follows || line_->goal != goal_position || !isAt(*position_, line_->next))
+    line_ = Line{*position_, goal_position, move.to};
+  line_->next = move.to;
   move_ = move;
   coarse_ = !speed.fine;
   origin_monitor_.setMove(move.to);
-  request(Kind::kMove, mp285Move(position), 1.25 * timeLeft() + kMoveAllowance);
+  request(Kind::kMove, mp285Move(position), 1.25 * timeLeft() + config_.move_allowance);
+  extrapolateFor(timeLeft() + kHeldReply + answer_time_);
 }
 
 }  // namespace microinjection

@@ -12,6 +12,7 @@ namespace microinjection {
 struct Mp285Config : MoveByMoveConfig {
   /// m per microstep of the device's axes X, Y, Z; 0: from its status, if that is a known one
   Eigen::Vector3d microsteps = Eigen::Vector3d::Zero();
+  double move_allowance = 0.05;    ///< s, that a move may take beyond 1.25 times its way over its speed
   double command_pause = 2e-3;     ///< s, between a reply and the next command
   double half_command_time = 0.3;  ///< s of silence after which the device discards an incomplete command
 
@@ -20,7 +21,9 @@ struct Mp285Config : MoveByMoveConfig {
 };
 
 /// Driver of the Sutter MP-285. The position is read after each move. While moving the device does
-/// not reply, and the position is extrapolated with the set speed.
+/// not reply, and the position is extrapolated with the set speed. So a move is a part of the way
+/// that takes a tenth of a second, after which the device is stopped unless it has replied: a
+/// command whose bytes the line has changed leads no further.
 ///
 /// After any failure the position is read before the next move; the rest of the path, if any, is a
 /// move of its own. Another position at rest is due to the hand wheel. Then the settings are sent
