@@ -160,7 +160,7 @@ TEST_F(TrainingLogTest, RowsWithoutNeedleOrForceAreGaps) {
 TEST(TrainingConfigTest, TheSuppliedFileIsGoodAndMistakesAreNamed) {
   YAML::Node map = loadYamlMap(std::string(MICROINJECTION_SOURCE_DIR) + "/config/training.yaml");
   map["operator"] = "ada";
-  map["history"] = "history.csv";
+  map["history"] = "/records/history.csv";
   ConfigReader good(map, "training");
   EXPECT_EQ(TrainingConfig::read(good).task.volume, 4.8e-15);
   EXPECT_NO_THROW(good.finish());
