@@ -102,8 +102,10 @@ void HapticBridgeNode::watch(const geometry_msgs::PoseStamped& hand, const ros::
   watched_ = now;
   if (hand.header.stamp.isZero()) return hand_.repeats.clear();
   const Eigen::Vector3d position = toVector(hand.pose.position);
-  // A device that leads nothing may lie on the table.
-  const bool leads = output_.state == Engagement::State::kFollow;
+  // A device that leads nothing may lie on the table, and one that sets a speed may rest in its dead zone.
+  const bool sets_speed = parameters_.model.motion.mode == "rate";
+  const bool leads = output_.state == Engagement::State::kFollow && !(sets_speed && output_.needle == led_to_);
+  led_to_ = output_.needle;
   const bool repeats = hand_poses_.step(position, leads ? dt : 0);
   hand_.repeats = repeats ? "one pose, which the tremor of a hand must change" : "";
   const double step = (position - toVector(last_hand_.pose.position)).norm();

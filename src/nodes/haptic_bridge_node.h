@@ -86,6 +86,7 @@ class HapticBridgeNode {
   LoopStatePublisher loop_state_;
   ForceReceiver receiver_;
   Repetition<Eigen::Vector3d> hand_poses_;  ///< m, exposed to s
+  std::optional<Eigen::Vector3d> led_to_;   ///< m, the needle's target when the hand was watched last
   ros::Time watched_;                       ///< the last of them
   geometry_msgs::PoseStamped last_hand_;    ///< valid, of any device
   bool hand_leaps_ = false;                 ///< since the last step

@@ -24,16 +24,18 @@ void ForceLiveness::receive(const geometry_msgs::WrenchStamped& message) {
   }
   const Eigen::Vector3d force = toVector(message.wrench.force);
   readings_.step(force, 1);
-  if (on_way_.changes(force)) way_from_.reset();
+  // Only what arrives can repeat: a force that is late is judged by its age.
+  if (on_way_.changes(force)) {
+    way_from_ = tip_;
+  } else if (tip_ && way_from_) {
+    on_way_.exposeTo((*tip_ - *way_from_).norm());
+  }
 }
 
 void ForceLiveness::step(const std::optional<Eigen::Vector3d>& tip, bool felt) {
-  if (tip && (presses_ || felt)) {
-    if (!way_from_) way_from_ = tip;
-    on_way_.exposeTo((*tip - *way_from_).norm());
-  } else if (!on_way_.repeats()) {
-    way_from_.reset();
-  }
+  tip_ = presses_ || felt ? tip : std::nullopt;
+  if (!tip_ && !on_way_.repeats()) way_from_.reset();
+  if (tip_ && !way_from_) way_from_ = tip_;
   port_.repeats = readings_.repeats() ? "one reading, whose noise must change it (or is sensor/quiet true?)"
                   : on_way_.repeats() ? "one force, although the needle has moved in the cell"
                                       : "";

@@ -43,7 +43,7 @@ class ForceLiveness {
 
   Input<geometry_msgs::WrenchStamped>& port_;
   Repetition<Eigen::Vector3d> readings_, on_way_;  ///< N
-  std::optional<Eigen::Vector3d> way_from_;        ///< m, the tip when the force changed last
+  std::optional<Eigen::Vector3d> way_from_, tip_;  ///< m, the tip when the force changed last, and now while it presses
   bool presses_ = false;                           ///< by the model, the needle an intact cell
   Subscription contact_;
 };

@@ -196,7 +196,8 @@ void Micromanipulator::step(double time, double dt) {
   stream_pause_ += dt;
   if (const std::string reason = unavailableReason(); !reason.empty()) {
     if (mode_ != Mode::kHold) abort_reason_ = reason;
-    rest();
+    // A device that has lost its position may still have a goal, to which it would go on.
+    device_->state() == ManipulatorDevice::State::kReady && !streams_blocked_ ? halt() : rest();
     move_active_ = false;
     if (!streams_blocked_) fault_cleared_ = false;  // it was ready in between
     streams_blocked_ = true;

@@ -273,7 +273,7 @@ void Mp285Driver::nextTowardsGoal() {
   coarse_ = !speed.fine;
   origin_monitor_.setMove(move.to);
   request(Kind::kMove, mp285Move(position), 1.25 * timeLeft() + config_.move_allowance);
-  extrapolateFor(timeLeft() + kHeldReply + answer_time_);
+  extrapolateFor(timeLeft() + std::max(config_.move_allowance, kHeldReply + answer_time_));
 }
 
 }  // namespace microinjection
