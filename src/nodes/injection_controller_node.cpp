@@ -30,7 +30,8 @@ bool moves(const std::string& command) { return command == "home" || command == 
 
 const char* const InjectionControllerNode::kHelp =
     "injection_controller: controls the needle and holds it when an input is invalid.\n"
-    "In: /teleop/servo_cp /needle/measured_cp, /cell/predicted_cf or /force_sensor/measured_cf, /injector/state,\n"
+    "In: /teleop/servo_cp /needle/measured_cp /needle/setpoint_cp, /cell/predicted_cf or /force_sensor/measured_cf, "
+    "/injector/state,\n"
     "/needle/abilities, /needle/operating_state, /needle/loop_state, /cell/estimate, /controller/state_command "
     "(enable, disable, pause, resume, home, unhome, "
     "approach, indent,\n"
@@ -88,6 +89,10 @@ InjectionControllerNode::InjectionControllerNode(Bus& bus)
   using cell_microinjection::CellEstimate;
   estimates_ = subscribeGuarded<CellEstimate>(
       bus, "cell/estimate", 1, [this](const CellEstimate& message, const std::string&) { receiveEstimate(message); });
+  rig_setpoints_ = subscribeGuarded<geometry_msgs::PoseStamped>(
+      bus, "needle/setpoint_cp", 1, [this](const geometry_msgs::PoseStamped& message, const std::string&) {
+        rig_setpoint_ = validPosition(&message, kWorldFrame);
+      });
   cycle_.diagnostics().add("control", [this](auto& status) { report(status); });
   if (parameters_.auto_enable) execute("enable");
   cycle_.onStep([this](const Cycle::Tick& tick) { step(tick); });
@@ -168,15 +173,18 @@ std::optional<ExpectedPuncture> InjectionControllerNode::expectedPuncture(const 
   return std::abs(age) <= parameters_.model.expectation.timeout ? expected_ : std::nullopt;
 }
 
-/// A rig that was commanded to move, and has not for this long, does not read its position; or it is stuck.
+/// A rig that was commanded to move, and has not for this long, does not read its position; or it is stuck. A set-point
+/// that the rig refuses, as one beyond the end of its travel, is no motion: its own set-point counts where it tells
+/// one.
 void InjectionControllerNode::watchNeedle(const geometry_msgs::PoseStamped& needle, const ros::Time& now) {
   const double dt = watched_.isZero() ? 0 : std::max(0.0, secondsBetween(watched_, now));
   watched_ = now;
   if (needle.header.stamp.isZero()) needle_poses_.reset();
-  if (needle_poses_.changes(toVector(needle.pose.position))) setpoint_then_ = commanded_;
-  if (!commanded_) setpoint_then_.reset();
-  if (!setpoint_then_) setpoint_then_ = commanded_;
-  const bool is_sent = commanded_ && (*commanded_ - *setpoint_then_).norm() > kNeedleRests + needle_step_;
+  const auto sent = commanded_ && rig_setpoint_ ? rig_setpoint_ : commanded_;
+  if (needle_poses_.changes(toVector(needle.pose.position))) setpoint_then_ = sent;
+  if (!sent) setpoint_then_.reset();
+  if (!setpoint_then_) setpoint_then_ = sent;
+  const bool is_sent = sent && (*sent - *setpoint_then_).norm() > kNeedleRests + needle_step_;
   if (is_sent) needle_poses_.expose(dt / needle_patience_);
   needle_.repeats = needle_poses_.repeats() ? "one pose, although it was sent elsewhere" : "";
 }
@@ -205,13 +213,14 @@ void InjectionControllerNode::step(const Cycle::Tick& tick) {
     input.force = validForce(force_.get(tick.now), needle->linear());
     witnesses_.fill(*needle, tick.now, input);
   }
-  const auto setpoint = model_.step(input, tick.dt);
+  const bool rig_follows = input.rig_hold.empty();
+  const auto setpoint = model_.step(std::move(input), tick.dt);
   if (setpoint) {
     Eigen::Isometry3d pose = needle ? *needle : Eigen::Isometry3d::Identity();
     pose.translation() = *setpoint;
     setpoint_.publish(toPose(pose, target && model_.followsTarget() ? target->header.stamp : tick.now, kWorldFrame));
   }
-  const bool is_commanded = model_.state() == OperatingState::kEnabled && input.rig_hold.empty();
+  const bool is_commanded = model_.state() == OperatingState::kEnabled && rig_follows;
   commanded_ = is_commanded ? setpoint : std::nullopt;
   if (injector_) injector_->setPulse(model_.pulse(), tick.now);
   action_.step(tick.now);

@@ -88,6 +88,7 @@ class InjectionControllerNode {
   ros::Time watched_;                             ///< the last of them
   std::optional<Eigen::Vector3d> setpoint_then_;  ///< m, when it changed; empty: the rig was not commanded
   std::optional<Eigen::Vector3d> commanded_;      ///< m, the last set-point; empty: the rig is not commanded
+  std::optional<Eigen::Vector3d> rig_setpoint_;   ///< m, which the rig has accepted; empty: it does not tell
   double needle_patience_ = 0.2;                  ///< s
   double needle_step_ = 0;                        ///< m, the rig's resolution
   RigWatch rig_;
@@ -98,7 +99,7 @@ class InjectionControllerNode {
   CommandLog log_;
   BusyReport busy_;
   bool state_command_received_ = false;
-  Subscription commands_, abilities_, estimates_;
+  Subscription commands_, abilities_, estimates_, rig_setpoints_;
   std::optional<ExpectedPuncture> expected_;  ///< by the twin
   ros::Time estimated_;                       ///< its time
   bool adapted_ = false;                      ///< to a rig's abilities

@@ -36,9 +36,11 @@ void ForceLiveness::step(const std::optional<Eigen::Vector3d>& tip, bool felt) {
   tip_ = presses_ || felt ? tip : std::nullopt;
   if (!tip_ && !on_way_.repeats()) way_from_.reset();
   if (tip_ && !way_from_) way_from_ = tip_;
-  port_.repeats = readings_.repeats() ? "one reading, whose noise must change it (or is sensor/quiet true?)"
-                  : on_way_.repeats() ? "one force, although the needle has moved in the cell"
-                                      : "";
+  port_.repeats =
+      readings_.repeats()
+          ? "one reading, whose noise must change it, unless the sensor is saturated (or is sensor/quiet true?)"
+      : on_way_.repeats() ? "one force, although the needle has moved in the cell"
+                          : "";
 }
 
 }  // namespace microinjection

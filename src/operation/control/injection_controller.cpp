@@ -94,8 +94,11 @@ void InjectionController::engage(const Eigen::Vector3d& needle, const Eigen::Vec
 /// A force that cannot be is none. Its cause does not go away by itself: a person has to look at the sensor.
 void InjectionController::refuseForce(Input& input) {
   const bool sensor = !config_.witness.measured;
+  // A force that was felt well before the model's touch is of a cell that is not where its model is.
+  const bool comparable = monitor_.depth() <= config_.witness.depth;
+  const std::optional<Eigen::Vector3d> predicted = comparable ? input.witness : std::nullopt;
   sensor_fault_ =
-      isValid(input.force) && sensor ? sensorFault(config_.guards, *input.force, input.axis, input.witness) : "";
+      isValid(input.force) && sensor ? sensorFault(config_.guards, *input.force, input.axis, predicted) : "";
   if (sensor_fault_.empty()) return;
   input.force.reset();
   const bool withdraws = homing_ || injection_ == InjectionState::kWithdraw;
@@ -106,8 +109,7 @@ void InjectionController::refuseForce(Input& input) {
   if (setpoint_ && isValid(input.needle)) stopNeedle(input);
 }
 
-std::optional<Eigen::Vector3d> InjectionController::step(const Input& given, double dt) {
-  Input input = given;
+std::optional<Eigen::Vector3d> InjectionController::step(Input input, double dt) {
   const bool needle_valid = isValid(input.needle);
   needle_valid_ = needle_valid_ || needle_valid;
   if (needle_valid && isValid(input.force)) guard_force_ = input.force->dot(input.axis);

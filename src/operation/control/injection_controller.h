@@ -104,7 +104,7 @@ class InjectionController {
 
   /// Advances by dt (s). Returns the set-point of the needle (m, `world`); empty while DISABLED or
   /// in FAULT.
-  std::optional<Eigen::Vector3d> step(const Input& input, double dt);
+  std::optional<Eigen::Vector3d> step(Input input, double dt);
 
   /// Adapts to a rig that is at most `speed` (m/s) fast and follows with a `lag` (s): the set-point
   /// is then never faster than lag_limit and the configuration allow. Returns empty, or why the

@@ -124,5 +124,23 @@ TEST_F(ChainTest, ClutchMovesTheHandAlone) {
   EXPECT_LT((hand_.needle() - before - Eigen::Vector3d(0, 0, 10e-6)).norm(), 1e-9);
 }
 
+/// The set-point goes beyond where the manipulator can follow; the pose then repeats, but not because it is unread.
+TEST(EndOfTravelTest, TheNeedleFollowsAHandThatComesBack) {
+  constexpr double kEnd = 12.5e-3, kNear = 10e-6;  // m, urdf/rig.urdf
+  VirtualSession session({"cell:=" + testFile("scenes/coarse_oocyte.yaml"), "model:=live", "hand.device:=external",
+                          "hand.require_operator:=false", "overrides:={rig: {start_height: 12.49e-3}}"});
+  LedHand hand(session);
+  for (const char* node :
+       {"micromanipulator", "force_sensor", "cell_simulator", "injection_controller", "haptic_bridge"})
+    session.add(node, "{diagnostic_period: 0.1}");
+  session.run(0.15);
+  hand.moveTo(2 * kNear / LedHand::kScale, 0.1, 1.5);
+  const double end = hand.needle().z();
+  EXPECT_NEAR(end, kEnd, 1e-6);
+  hand.moveTo(kNear / LedHand::kScale);
+  EXPECT_NEAR(end - hand.needle().z(), kNear, 1e-6);
+  EXPECT_FALSE(session.diagnostics().ever("injection_controller: inputs", "one pose"));
+}
+
 }  // namespace
 }  // namespace microinjection

@@ -152,6 +152,21 @@ TEST_F(WithdrawalGuardTest, AForceThatIsAThousandTimesThePredictedOneIsNamedAlre
   }
 }
 
+TEST_F(WithdrawalGuardTest, AForceThatIsFeltLongBeforeTheModelsTouchIsNoFaultOfTheSensor) {
+  enable();
+  std::normal_distribution<double> noise(0, 10e-9);  // N
+  const double limit = config_.guards.force_limit, way = config_.witness.depth + 2e-6, steps = 300;
+  for (int i = 0; i < config_.detection.noise_samples + 50; ++i) step(noise(random_));
+  for (int i = 0; i < steps; ++i) {
+    press(way / steps);
+    step(0.9 * limit * i / steps + noise(random_));
+  }
+  input_.witness = limit / 1000 * kAxis;  // the model's cell begins here
+  step(1.1 * limit);
+  EXPECT_EQ(controller_.state(), OperatingState::kEnabled) << controller_.holdReason();
+  EXPECT_TRUE(saysOf("only be withdrawn")) << controller_.holdReason();
+}
+
 TEST_F(WithdrawalGuardTest, AForceThatCannotBeStopsAnInjection) {
   config_.mode = "automatic";
   enable();
