@@ -12,7 +12,7 @@ import rospy
 import rostest
 from actionlib_msgs.msg import GoalID
 from cell_microinjection.msg import (GoToPixelAction, GoToPixelFeedback, GoToPixelResult, InjectionStatus, InjectorState,
-                                     OperatingState)
+                                     LoopState, OperatingState)
 from geometry_msgs.msg import PoseStamped
 from sensor_msgs.msg import Image
 
@@ -31,6 +31,7 @@ class ConsoleTest(ConsoleUser, unittest.TestCase):
         cls.open_console()
         cls.seen, cls.states, cls.cancelled = {}, [], []
         for topic, kind in (("/controller/injection_state", InjectionStatus), ("/controller/operating_state", OperatingState),
+                            ("/controller/loop_state", LoopState),
                             ("/injector/state", InjectorState), ("/needle/measured_cp", PoseStamped)):
             rospy.Subscriber(topic, kind, cls.on_message, topic)
         rospy.Subscriber("/calibration/calibrate/cancel", GoalID, cls.cancelled.append)
@@ -47,7 +48,9 @@ class ConsoleTest(ConsoleUser, unittest.TestCase):
             cls.states.append(state)
 
     def report(self):
-        return f"states {self.states}, {super().report()}"
+        last = {topic: str(self.seen.get(f"/controller/{topic}")).replace("\n", ", ")
+                for topic in ("injection_state", "operating_state", "loop_state")}
+        return f"states {self.states}, {last}, {super().report()}"
 
     def operating(self, state):
         self.until(lambda: self.seen["/controller/operating_state"].state == state, state)
