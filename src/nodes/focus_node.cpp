@@ -40,13 +40,13 @@ FocusNode::FocusNode(Bus& bus)
     : GoalNode(bus, "focus/find", "focus", kFocusPeriod),
       parameters_(Parameters::read(bus)),
       command_(bus.advertise<sensor_msgs::JointState>("/focus/move_jp", 1)),
-      vision_(subscribeGuarded<cell_microinjection::VisionState>(
+      vision_(subscribeMeasured<cell_microinjection::VisionState>(
           bus, "vision/state", kFocusQueue,
           [this](const cell_microinjection::VisionState& message, const std::string&) { onVision(message); })),
-      focus_state_(subscribeGuarded<sensor_msgs::JointState>(
+      focus_state_(subscribeMeasured<sensor_msgs::JointState>(
           bus, "/focus/measured_js", kFocusQueue,
           [this](const sensor_msgs::JointState& message, const std::string&) { onFocus(message); })),
-      needle_state_(subscribeGuarded<geometry_msgs::PoseStamped>(
+      needle_state_(subscribeMeasured<geometry_msgs::PoseStamped>(
           bus, "/needle/measured_cp", kFocusQueue,
           [this](const geometry_msgs::PoseStamped& message, const std::string&) { onNeedle(message); })) {
   cv::setNumThreads(1);  // the other cores belong to the nodes at 1 kHz
