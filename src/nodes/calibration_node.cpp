@@ -7,6 +7,7 @@
 
 #include "base/errors.h"
 #include "nodes/imaging/calibration_messages.h"
+#include "nodes/imaging/image_size.h"
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/node_parameters.h"
@@ -82,6 +83,7 @@ std::string CalibrationNode::utcNow() const {
 
 void CalibrationNode::watchDrift(const SeenTip& tip) {
   if (!calibration_ || !play_ || !play_->known(0) || !play_->known(2) || run_) return;
+  if (!calibration_->refusalOf(watch_.imageSize()).empty()) return;
   if (tip.stamp < watch_.restedSince() + parameters_.calibration.pattern.settle_time) return;
   drift_report_ = drift_.add(*calibration_, play_->tip(), tip.pixel, tip.covariance);
 }
@@ -123,6 +125,7 @@ void CalibrationNode::begin(const Goal& goal) {
   // Away from the cell before it goes across.
   plan.waypoints.insert(plan.waypoints.begin(), {start + pattern.take_up * Eigen::Vector3d::UnitZ(), false, false});
   setpoint_ = goal_ = start;
+  images_ = watch_.imageSize();
   commanded_.clear();
   run_ = std::make_unique<CalibrationRun>(pattern, plan);
 }
@@ -131,6 +134,7 @@ void CalibrationNode::step() {
   if (!isActive()) return;
   if (const std::string reason = interruption(); !reason.empty()) return finish(false, reason);
   if (!commanded_.empty()) return finish(false, "the needle had the command " + commanded_);
+  if (const std::string change = sizeChange(images_, watch_.imageSize()); !change.empty()) return finish(false, change);
   if (const auto goal = run_->step(input())) goal_ = *goal;
   if (!run_->failure().empty()) return finish(false, run_->failure());
   stream(bus_.now());

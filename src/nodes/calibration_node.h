@@ -71,7 +71,8 @@ class CalibrationNode : public GoalNode<cell_microinjection::CalibrateAction> {
   DriftReport drift_report_;
   std::unique_ptr<CalibrationRun> run_;
   Eigen::Vector3d setpoint_ = Eigen::Vector3d::Zero(), goal_ = Eigen::Vector3d::Zero();  ///< m, of the run
-  std::string commanded_;  ///< to the needle, from elsewhere, during the run
+  Eigen::Vector2i images_ = Eigen::Vector2i::Zero();  ///< px, their size when the run began
+  std::string commanded_;                             ///< to the needle, from elsewhere, during the run
 
   Publisher<geometry_msgs::PoseStamped> setpoints_;
   Subscription commands_;

@@ -6,6 +6,7 @@
 
 #include "base/errors.h"
 #include "nodes/imaging/image_input.h"
+#include "nodes/imaging/image_size.h"
 #include "nodes/imaging/image_topic.h"
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/message_guard.h"
@@ -40,13 +41,13 @@ FocusNode::FocusNode(Bus& bus)
     : GoalNode(bus, "focus/find", "focus", kFocusPeriod),
       parameters_(Parameters::read(bus)),
       command_(bus.advertise<sensor_msgs::JointState>("/focus/move_jp", 1)),
-      vision_(subscribeGuarded<cell_microinjection::VisionState>(
+      vision_(subscribeMeasured<cell_microinjection::VisionState>(
           bus, "vision/state", kFocusQueue,
           [this](const cell_microinjection::VisionState& message, const std::string&) { onVision(message); })),
-      focus_state_(subscribeGuarded<sensor_msgs::JointState>(
+      focus_state_(subscribeMeasured<sensor_msgs::JointState>(
           bus, "/focus/measured_js", kFocusQueue,
           [this](const sensor_msgs::JointState& message, const std::string&) { onFocus(message); })),
-      needle_state_(subscribeGuarded<geometry_msgs::PoseStamped>(
+      needle_state_(subscribeMeasured<geometry_msgs::PoseStamped>(
           bus, "/needle/measured_cp", kFocusQueue,
           [this](const geometry_msgs::PoseStamped& message, const std::string&) { onNeedle(message); })) {
   cv::setNumThreads(1);  // the other cores belong to the nodes at 1 kHz
@@ -78,6 +79,7 @@ void FocusNode::onVision(const cell_microinjection::VisionState& message) {
   tip_receipt_ = receive(message.header.stamp);
   tip_reason_ = isOld(tip_receipt_) ? "the image is old, or stamped ahead" : seen.reason;
   if (isOld(tip_receipt_) || seen.verdict == seen.NOT_FOUND) return;
+  seen_size_ = {static_cast<int>(message.width), static_cast<int>(message.height)};
   const Tip tip{message.header.stamp.toSec(), seen.verdict == seen.FOUND,
                 TipInImage{{seen.x, seen.y}, seen.direction, parameters_.core}};
   tip_reason_ = "the tip's place is not finite";
@@ -93,7 +95,9 @@ void FocusNode::onImage(const sensor_msgs::Image& message) {
   if (blind_.empty() && isOld(reading_receipt_)) blind_ = "the image is old, or stamped ahead";
   if (blind_.empty() && data_.step(message.data, 1)) blind_ = "the camera repeats its last image";
   if (!blind_.empty()) return bus_.refusals().add(kImageTopic, blind_);
-  blind_ = "its format is wrong";  // until it was read: cv_bridge throws
+  size_ = {static_cast<int>(message.width), static_cast<int>(message.height)};
+  if (!sizeChange(first_size_, size_).empty()) return;  // the window is not of this one: the search ends
+  blind_ = "its format is wrong";                       // until it was read: cv_bridge throws
   const Frame frame(pixelsOf(message));
   blind_ = frame.refusal();
   if (!blind_.empty()) return;
@@ -113,6 +117,7 @@ void FocusNode::begin(const Goal&) {
   repeated_ = false;
   planes_ = 0;
   needle_at_start_ = needle_;
+  size_ = first_size_ = seen_size_;
   beginSearch(*start, *tip_);
   images_ =
       subscribeImages(bus_, kImageTopic, kFocusQueue, [this](const sensor_msgs::Image& message) { onImage(message); });
@@ -140,6 +145,7 @@ void FocusNode::step() {
     return finish(false, "the needle's position is not known any more");
   if (needle_ && needle_at_start_ && (*needle_ - *needle_at_start_).norm() > parameters_.largest_motion)
     return finish(false, "the needle moves: it must rest during the search");
+  if (const std::string change = sizeChange(first_size_, size_); !change.empty()) return finish(false, change);
   const double now = bus_.now().toSec();
   if (rough_) return verify(now);
   const auto goal = search_->step({now, position(), isOld(reading_receipt_) ? std::nullopt : reading_, blind_});

@@ -87,6 +87,8 @@ class FocusNode : public GoalNode<cell_microinjection::FindFocusAction> {
   std::string tip_reason_ = "no image was received";
   std::optional<FocusSearch::Reading> reading_;
   Receipt reading_receipt_;
+  /// px: of the image that vision/state is of, of the search's first one, and of the newest one.
+  Eigen::Vector2i seen_size_ = Eigen::Vector2i::Zero(), first_size_ = seen_size_, size_ = seen_size_;
   std::string blind_;                              ///< why the newest image is not usable; empty: it is
   Repetition<std::vector<std::uint8_t>> data_{0};  ///< of the images that arrived: noise changes each
 

@@ -34,10 +34,10 @@ TouchNode::TouchNode(Bus& bus)
       parameters_(Parameters::read(bus)),
       watch_(bus, parameters_.input_timeout),
       setpoints_(bus, watch_),
-      vision_(subscribeGuarded<cell_microinjection::VisionState>(
+      vision_(subscribeMeasured<cell_microinjection::VisionState>(
           bus, "vision/state", 1,
           [this](const cell_microinjection::VisionState& message, const std::string&) { onVision(message); })),
-      forces_(subscribeGuarded<geometry_msgs::WrenchStamped>(
+      forces_(subscribeMeasured<geometry_msgs::WrenchStamped>(
           bus, "/force_sensor/measured_cf", 1,
           [this](const geometry_msgs::WrenchStamped& message, const std::string&) { onForce(message); })) {}
 

@@ -86,9 +86,20 @@ class RosSubscription : public RawSubscription {
   ros::Subscriber subscriber_;
 };
 
-class RosImageSubscription : public RawSubscription {
+/// By a transport of image_transport other than `raw`, which does not tell who sends an image.
+class PackedImageSubscription : public RawSubscription {
  public:
-  explicit RosImageSubscription(image_transport::Subscriber subscriber) : subscriber_(std::move(subscriber)) {}
+  PackedImageSubscription(ros::NodeHandle& node, const std::string& topic, std::uint32_t queue,
+                          MessageRefusals& refusals, const RawHandler& handler)
+      : subscriber_(image_transport::ImageTransport(node).subscribe(
+            topic, queue, [this, topic, &refusals, handler](const sensor_msgs::ImageConstPtr& image) {
+              if (publishers() > 1) {
+                return refusals.add(topic, "it is published by " + std::to_string(publishers()) +
+                                               " nodes: none counts until one of them is left (rostopic info " + topic +
+                                               ")");
+              }
+              handler({image, "", ros::Time::now(), false, nullptr});
+            })) {}
   std::size_t publishers() const override { return subscriber_.getNumPublishers(); }
 
  private:
@@ -137,11 +148,11 @@ std::shared_ptr<RawSubscription> RosBus::subscribeRaw(const MessageType& type, c
 }
 
 Subscription RosBus::subscribeImages(const std::string& topic, std::uint32_t queue, RawHandler handler) {
-  image_transport::ImageTransport transport(sampled_.node);
-  const auto receive = [handler](const sensor_msgs::ImageConstPtr& image) {
-    handler({image, "", ros::Time::now(), false, nullptr});
-  };
-  return Subscription(std::make_shared<RosImageSubscription>(transport.subscribe(topic, queue, receive)));
+  if (image_transport::TransportHints().getTransport() == "raw") {
+    const MessageType& type = messageType<sensor_msgs::Image>();
+    return Subscription(subscribeRaw(type, topic, queue, std::move(handler), Serving::kSampled));
+  }
+  return Subscription(std::make_shared<PackedImageSubscription>(sampled_.node, topic, queue, refusals(), handler));
 }
 
 BusHandle RosBus::advertiseServiceRaw(const ServiceType& type, const std::string& service, RawAnswer answer,

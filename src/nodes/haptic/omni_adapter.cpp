@@ -31,7 +31,8 @@ OmniAdapter::OmniAdapter(Cycle& cycle, const OmniConfig& config)
       receiver_(cycle, force_) {
   receiver_.monitor(state_);
   buttons_ = subscribeGuarded<OmniButtonEvent>(cycle.bus(), config.device + "/button", 10,
-                                               [this](const OmniButtonEvent& event, const std::string&) {
+                                               [this, &cycle](const OmniButtonEvent& event, const std::string& sender) {
+                                                 button_senders_.receive(sender, cycle.bus().now());
                                                  clutch_ = pressed(event, config_.clutch_button);
                                                  operator_present_ = pressed(event, config_.operator_button);
                                                });
@@ -39,7 +40,9 @@ OmniAdapter::OmniAdapter(Cycle& cycle, const OmniConfig& config)
 
 std::optional<HandReading> OmniAdapter::read(const Cycle::Tick& tick) {
   const OmniState* state = state_.get(tick.now);
-  if (!state) {
+  const std::string rivals = button_senders_.rivals(tick.now, buttons_.publishers() > 1);
+  rivals_ = rivals.empty() ? "" : config_.device + "/button is sent by two nodes, " + rivals;
+  if (!state || !rivals.empty()) {
     operator_present_ = false;
     return std::nullopt;
   }

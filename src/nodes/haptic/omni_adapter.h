@@ -5,6 +5,7 @@
 #include "nodes/haptic/force_receiver.h"
 #include "nodes/haptic/haptic_adapter.h"
 #include "nodes/haptic/omni_messages.h"
+#include "nodes/runtime/sole_sender.h"
 
 namespace microinjection {
 
@@ -30,7 +31,7 @@ class OmniAdapter : public HapticAdapter {
 
   std::optional<HandReading> read(const Cycle::Tick& tick) override;
   void render(const Eigen::Vector3d& force, const Cycle::Tick& tick) override;
-  std::string invalidReason() const override { return receiver_.reason(); }
+  std::string invalidReason() const override { return rivals_.empty() ? receiver_.reason() : rivals_; }
 
  private:
   OmniConfig config_;
@@ -38,6 +39,8 @@ class OmniAdapter : public HapticAdapter {
   Subscription buttons_;
   Publisher<OmniFeedback> force_;
   ForceReceiver receiver_;
+  SoleSender button_senders_;
+  std::string rivals_;  ///< why the buttons do not count; empty: they do
   bool clutch_ = false;
   bool operator_present_ = false;
 };

@@ -1,6 +1,7 @@
 #include "nodes/imaging/hand_setpoints.h"
 
 #include "base/errors.h"
+#include "nodes/imaging/image_size.h"
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/message_guard.h"
 
@@ -31,6 +32,7 @@ Eigen::Vector3d HandSetpoints::requireStart() const {
 
 void HandSetpoints::begin(const Eigen::Vector3d& start) {
   start_ = start;
+  images_ = watch_.imageSize();
   begun_ = connected_ = bus_.steady();
   engaged_ = false;
   setpoints_ = bus_.advertise<geometry_msgs::PoseStamped>(kSetpoints, 1);
@@ -41,7 +43,7 @@ std::string HandSetpoints::interruption() const {
   if (others_.publishers() > 1) return std::string("another node publishes ") + kSetpoints;
   if (!engaged_ && secondsBetween(begun_, bus_.steady()) > kPatience)
     return "the controller does not follow " + std::string(kSetpoints) + ": its mode must be manual";
-  return "";
+  return sizeChange(images_, watch_.imageSize());
 }
 
 bool HandSetpoints::engage() {

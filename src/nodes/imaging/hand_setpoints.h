@@ -31,8 +31,9 @@ class HandSetpoints {
  private:
   Bus& bus_;
   const TipWatch& watch_;
-  Eigen::Vector3d start_ = Eigen::Vector3d::Zero();  ///< m
-  ros::SteadyTime begun_, connected_;                ///< of the goal, and of the connection to the controller
+  Eigen::Vector3d start_ = Eigen::Vector3d::Zero();   ///< m
+  Eigen::Vector2i images_ = Eigen::Vector2i::Zero();  ///< px, their size when the goal began
+  ros::SteadyTime begun_, connected_;                 ///< of the goal, and of the connection to the controller
   bool engaged_ = false;
   Publisher<geometry_msgs::PoseStamped> setpoints_;  ///< while a goal is active, so that a hand finds the topic free
   Subscription others_;                              ///< counts the publishers of the set-points

@@ -3,10 +3,12 @@
 #include <cv_bridge/cv_bridge.h>
 #include <sensor_msgs/image_encodings.h>
 
+#include <memory>
 #include <utility>
 
 #include "base/errors.h"
 #include "nodes/runtime/message_guard.h"
+#include "nodes/runtime/sole_sender.h"
 
 namespace microinjection {
 namespace {
@@ -50,7 +52,10 @@ void acceptImageTransport(ConfigReader& reader) {
 Subscription subscribeImages(Bus& bus, const std::string& topic, std::uint32_t queue,
                              const std::function<void(const sensor_msgs::Image&)>& handler) {
   if (const std::string defect = topicDefect(bus.resolve(topic)); !defect.empty()) throw ConfigError(defect);
-  return bus.subscribeImages(topic, queue, [&bus, topic, handler](const RawDelivery& delivery) {
+  const auto senders = std::make_shared<SoleSender>();
+  return bus.subscribeImages(topic, queue, [&bus, topic, handler, senders](const RawDelivery& delivery) {
+    const std::string refusal = senders->refusalOf(delivery.sender, delivery.received);
+    if (!refusal.empty()) return bus.refusals().add(topic, refusal);
     runGuarded(bus.refusals(), topic,
                [&] { handler(*static_cast<const sensor_msgs::Image*>(delivery.message.get())); });
   });

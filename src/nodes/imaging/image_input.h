@@ -18,7 +18,8 @@ std::string topicDefect(const std::string& topic);
 /// Takes the parameter of a node's transport (`image_transport`), which belongs to that library.
 void acceptImageTransport(ConfigReader& reader);
 
-/// Receives a camera's images and reports the exceptions of `handler`. Their stamps are not checked.
+/// Receives a camera's images and reports the exceptions of `handler`. Their stamps are not checked. While two nodes
+/// send, no image counts, and both are named.
 /// @throws ConfigError topicDefect()
 Subscription subscribeImages(Bus& bus, const std::string& topic, std::uint32_t queue,
                              const std::function<void(const sensor_msgs::Image&)>& handler);

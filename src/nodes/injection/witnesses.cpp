@@ -31,8 +31,8 @@ Witnesses::Witnesses(Cycle& cycle, const std::string& force_source, double timeo
   changes_ = bus_.subscribe<CellParameters>(
       "cell/parameters", 10, [this](const auto& delivery) { receiveChange(*delivery.message, delivery.raw.received); });
   using cell_microinjection::VisionState;
-  images_ = subscribeGuarded<VisionState>(bus_, "vision/state", 1,
-                                          [this](const VisionState& message, const auto&) { receiveImage(message); });
+  images_ = subscribeMeasured<VisionState>(bus_, "vision/state", 1,
+                                           [this](const VisionState& message, const auto&) { receiveImage(message); });
   if (force_source != "predicted") return;
   using cell_microinjection::CellContact;
   cell_ = bus_.subscribe<CellContact>("cell/contact", 1, [this](const auto& delivery) {

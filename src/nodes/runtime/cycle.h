@@ -84,7 +84,7 @@ void Cycle::subscribe(Input<Message>& port) {
   const Serving serving = port.phase == InputPhase::kDrives  ? Serving::kDrives
                           : port.phase == InputPhase::kWakes ? Serving::kWakes
                                                              : Serving::kSampled;
-  ports_.subscriptions.push_back(bus_.subscribe<Message>(port.topic, kBacklog, receive, serving));
+  port.subscription = bus_.subscribe<Message>(port.topic, kBacklog, receive, serving);
 }
 
 template <typename Message>

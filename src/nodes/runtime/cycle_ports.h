@@ -12,7 +12,6 @@ namespace microinjection {
 struct CyclePorts {
   std::vector<std::unique_ptr<InputPort>> inputs;
   std::vector<std::unique_ptr<OutputPort>> outputs;
-  std::vector<Subscription> subscriptions;
   StallMonitor stalls;
 };
 

@@ -4,9 +4,11 @@
 
 #include <cstdint>
 #include <exception>
+#include <memory>
 #include <string>
 
 #include "nodes/bus/bus.h"
+#include "nodes/runtime/sole_sender.h"
 #include "nodes/runtime/stamps.h"
 
 namespace microinjection {
@@ -47,6 +49,18 @@ Subscription subscribeGuarded(Bus& bus, const std::string& topic, std::uint32_t 
     });
   };
   return bus.subscribe<Message>(topic, queue_size, receive, serving);
+}
+
+/// Like subscribeGuarded, for what is measured, which one node sends: while two do, no message counts, and both are
+/// named.
+template <typename Message, typename Handler>
+Subscription subscribeMeasured(Bus& bus, const std::string& topic, std::uint32_t queue_size, Handler handler) {
+  const auto senders = std::make_shared<SoleSender>();
+  return subscribeGuarded<Message>(bus, topic, queue_size,
+                                   [&bus, topic, handler, senders](const auto& message, const auto& sender) {
+                                     const std::string refusal = senders->refusalOf(sender, bus.now());
+                                     refusal.empty() ? handler(message, sender) : bus.refusals().add(topic, refusal);
+                                   });
 }
 
 }  // namespace microinjection

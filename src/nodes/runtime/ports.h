@@ -42,7 +42,10 @@ class InputPort {
     return !disconnected && repeats.empty() && valid() && age(now) >= 0 && age(now) <= timeout && rivals(now).empty();
   }
   /// The two nodes that both send now, of which nobody can know which one is right; empty: one does.
-  std::string rivals(const ros::Time& now) const { return one_sender ? senders.rivals(now) : ""; }
+  std::string rivals(const ros::Time& now) const {
+    const bool has_changes_only = std::isinf(timeout);
+    return one_sender ? senders.rivals(now, has_changes_only && subscription.publishers() > 1) : "";
+  }
 
   const std::string topic;
   const InputPhase phase;
@@ -58,6 +61,7 @@ class InputPort {
   /// message without a stamp gets that of its arrival, unless its publisher latches.
   StampRule stamp_rule = StampRule::kTimely;
   MessageRefusals& refusals;
+  Subscription subscription;  ///< that fills it
 };
 
 /// Arrival of a message, live.

@@ -24,10 +24,17 @@ class SoleSender {
     }
     sent_ = now;
   }
+  /// Receives. @returns why the message does not count; empty: it does
+  std::string refusalOf(const std::string& sender, const ros::Time& now) {
+    receive(sender, now);
+    const std::string both = rivals(now);
+    return both.empty() ? "" : "it is sent by two nodes, " + both + ": none counts until one has stopped";
+  }
 
-  /// Both names while two nodes send; else empty.
-  std::string rivals(const ros::Time& now) const {
-    if (other_.empty() || isDue(other_sent_, now, kHandOver)) return "";
+  /// Both names while two nodes send; else empty. `both_are_there`: of a topic that has changes only, whose other
+  /// sender may be silent for long and then send the next one.
+  std::string rivals(const ros::Time& now, bool both_are_there = false) const {
+    if (other_.empty() || (!both_are_there && isDue(other_sent_, now, kHandOver))) return "";
     return other_ < sender_ ? other_ + " and " + sender_ : sender_ + " and " + other_;
   }
 

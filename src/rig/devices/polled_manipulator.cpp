@@ -8,8 +8,7 @@
 namespace microinjection {
 namespace {
 
-constexpr double kExtrapolatedMotion = 0.1;  // s, of motion by which an extrapolated position may be wrong
-constexpr int kSetupTries = 6;               // for a setup line, which needs two equal replies
+constexpr int kSetupTries = 6;  // for a setup line, which needs two equal replies
 constexpr std::size_t kLongestReply = 80;
 
 std::string printable(const std::string& text) {
@@ -186,7 +185,7 @@ void PolledManipulator::updatePosition(const Eigen::Vector3d& position) {
   const double under_way = reading_margin_ / count() + kExtrapolatedMotion * speed;
   // At rest, or before rest is confirmed, only four equal readings can change the position.
   const double tolerance = move_ ? under_way : kSame;
-  const bool on_line = !move_ || besideTheLine(position) <= reading_margin_;
+  const bool on_line = !move_ || besideTheLine(position) <= line_margin_;
   if (!filter_.accept(position, on_line ? expected : nowhere, tolerance, tolerance) || !reply_times_.measured()) {
     if (move_ && filter_.isContradicted()) contradicted(position);
     return;  // requested again
@@ -223,8 +222,8 @@ void PolledManipulator::contradicted(const Eigen::Vector3d& position) {
 /// A limit switch that stops one axis is told by its name.
 bool PolledManipulator::faultAstray(const Eigen::Vector3d& position) {
   const std::string reason = notArrivedReason();
-  if (reason.empty() || besideTheLine(position) <= reading_margin_) {
-    return faultBesideTheLine(position, reading_margin_);
+  if (reason.empty() || besideTheLine(position) <= line_margin_) {
+    return faultBesideTheLine(position, line_margin_);
   }
   raiseFault(kNotArrived + reason);
   return true;

@@ -121,7 +121,12 @@ class PolledManipulator : public MoveByMove {
   void nextOfMove();
   void nextTowardsGoal();
 
+  /// s of motion by which an extrapolated position may be wrong, and axes of unequal speed beside their line.
+  static constexpr double kExtrapolatedMotion = 0.1;
+  static constexpr double kStraight = 1e-6;  // m, by which a slow device may be beside its line, besides 2 counts
+
   const double reading_margin_;  // m
+  double line_margin_ = 0;       // m, by which a reading of the last move may be beside its line
   const Dialect dialect_;
   LineSplitter lines_;
   std::optional<Exchange> exchange_;

@@ -80,6 +80,7 @@ void PolledManipulator::nextTowardsGoal() {
     part /= chosen.deviation;
   }
   line_->next = to;
+  line_margin_ = std::min(reading_margin_, kStraight + 2 * count() + kExtrapolatedMotion * chosen.speed);
   const double not_sent = std::numeric_limits<double>::infinity();
   move_ = Move{from, to, goal_position, goal()->follows, not_sent, chosen.duration};
   progress_ = Progress{};

@@ -2,6 +2,7 @@
 
 #include <geometry_msgs/WrenchStamped.h>
 #include <gtest/gtest.h>
+#include <sensor_msgs/Image.h>
 #include <std_msgs/Bool.h>
 #include <std_srvs/Trigger.h>
 
@@ -93,6 +94,20 @@ TYPED_TEST_P(BusContract, MessageArrivesWithSenderTimeAndNumber) {
   };
   EXPECT_EQ(at(0).stamp, ros::Time(12));
   EXPECT_EQ(at(1).seq, at(0).seq + 1);
+}
+
+TYPED_TEST_P(BusContract, ImageArrivesWithItsSender) {
+  Bus &first = this->pair_.first(), &second = this->pair_.second();
+  std::vector<std::string> senders;
+  const Subscription images =
+      second.subscribeImages("image", 1, [&](const RawDelivery& delivery) { senders.push_back(delivery.sender); });
+  const auto publisher = first.advertiseImages("image", 1);
+  ASSERT_TRUE(this->pair_.serve([&] { return publisher->subscribers() == 1; }));
+  const sensor_msgs::Image image;
+  publisher->publish(&image);
+  ASSERT_TRUE(this->pair_.serve([&] { return !senders.empty(); }));
+  EXPECT_EQ(senders[0], first.name());
+  EXPECT_EQ(images.publishers(), 1u);
 }
 
 TYPED_TEST_P(BusContract, MessageIsACopy) {
@@ -276,8 +291,8 @@ TYPED_TEST_P(BusContract, NodeThatStopsEndsInGoodOrder) {
   EXPECT_FALSE(second.isRunning());
 }
 
-REGISTER_TYPED_TEST_SUITE_P(BusContract, MessageArrivesWithSenderTimeAndNumber, MessageIsACopy,
-                            LateSubscriberReceivesTheLastMessageOfALatchingPublisherOnly,
+REGISTER_TYPED_TEST_SUITE_P(BusContract, MessageArrivesWithSenderTimeAndNumber, ImageArrivesWithItsSender,
+                            MessageIsACopy, LateSubscriberReceivesTheLastMessageOfALatchingPublisherOnly,
                             FullQueueDropsItsOldestMessages, SeveralPublishersAndTheirEnds,
                             EndedSubscriptionReceivesNothing, ServiceAnswersUntilItEnds, ParametersAreYaml,
                             NamesResolve, TimerCallsUntilItEnds, WaitingForNoTimeHandlesWhatHasArrived,

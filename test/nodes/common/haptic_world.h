@@ -28,6 +28,7 @@ class HapticWorld {
   TestNode& driver() { return driver_; }
   TestNode& world() { return session_.world(); }
   void run(double seconds) { session_.run(seconds); }
+  const HeardDiagnostics& diagnostics() const { return session_.diagnostics(); }
 
   /// The bridge's force (N), from now on.
   void force(double x, double y, double z) { world().repeat("haptic/servo_cf", wrenchMessage(x, y, z, "haptic")); }

@@ -35,10 +35,10 @@ class MarkerTest : public testing::Test {
   /// The bridge holds the needle.
   void hold() { device_.driver().repeatInvalid<geometry_msgs::PoseStamped>("teleop/servo_cp"); }
   void tell(std::uint8_t event, const Eigen::Vector3d& place = kHandle, const std::string& frame = "viz/world",
-            std::uint32_t entry = 0) {
+            std::uint32_t entry = 0, const std::string& client = "test") {
     Feedback message;
     message.header.frame_id = frame;
-    message.client_id = "test";
+    message.client_id = client;
     message.marker_name = "hand";
     message.event_type = event;
     message.menu_entry_id = entry;
@@ -113,6 +113,20 @@ TEST_F(MarkerTest, ADragMovesTheHandAtALimitedSpeed) {
   device_.run(0.1);
   EXPECT_NEAR((device_.hand() - start).norm(), 0.1 * kHandSpeed, 0.01 * kHandSpeed);
   device_.run(0.32);
+  EXPECT_LT((device_.hand() - start - Eigen::Vector3d(0, 0, -4e-3)).norm(), 1e-9);
+  letGo();
+}
+
+/// Of a second window of rviz, while the first one drags.
+TEST_F(MarkerTest, ASecondMouseMovesNothing) {
+  const Eigen::Vector3d start = drag();
+  for (int i = 0; i < 4; ++i) {
+    tell(Feedback::KEEP_ALIVE, place_);
+    for (const std::uint8_t event : {Feedback::MOUSE_DOWN, Feedback::POSE_UPDATE})
+      tell(event, kHandle + Eigen::Vector3d(0.1, 0, 0), "viz/world", 0, "second");
+    device_.run(0.1);
+  }
+  EXPECT_TRUE(present());
   EXPECT_LT((device_.hand() - start - Eigen::Vector3d(0, 0, -4e-3)).norm(), 1e-9);
   letGo();
 }

@@ -87,6 +87,27 @@ TEST_F(OmniTest, TheOperatorOfADeviceThatWasSilentPressesAgain) {
   EXPECT_EQ(device_.buttons(), TouchButtons(0, 1));
 }
 
+/// However long ago the driver has told its buttons.
+TEST_F(OmniTest, ButtonsOfTwoNodesLeadNothing) {
+  good();
+  press(0, 1);
+  device_.run(2);
+  EXPECT_EQ(device_.buttons(), TouchButtons(0, 1));
+  OmniButtonEvent event;
+  event.white_button = 1;
+  device_.world().say("phantom/button", event);
+  device_.run(1.5);
+  EXPECT_TRUE(device_.isSilent());
+  EXPECT_TRUE(
+      device_.diagnostics().ever("haptic_device: device", "phantom/button is sent by two nodes, /driver and /world"))
+      << device_.diagnostics().text("haptic_device: device");
+  device_.world().hangUp("phantom/button");
+  device_.run(0.6);
+  EXPECT_EQ(device_.buttons().second, 0) << "it must be pressed anew";
+  press(0, 1);
+  EXPECT_EQ(device_.buttons(), TouchButtons(0, 1));
+}
+
 /// The driver turns `locked` over at each press of the white button: locked at every second one.
 TEST_F(OmniTest, TheLockThatEachPressTurnsOverIsNoClutch) {
   good();

@@ -3,12 +3,14 @@
 #include <std_srvs/Trigger.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 
 #include "action_client.h"
 #include "cell_microinjection/CalibrateAction.h"
 #include "controlled_needle.h"
 #include "placed_specimen.h"
+#include "vision/calibration/calibration_file.h"
 
 namespace microinjection {
 namespace {
@@ -120,6 +122,28 @@ TEST_F(CalibrationTest, StopsWhenItIsCancelled) {
   EXPECT_EQ(action_.state(), actionlib_msgs::GoalStatus::PREEMPTED);
   needle_.expectRests(0.3);
   EXPECT_LT(std::abs(needle_.place().x() - start), 20e-6);  // its way in 0.2 s; the point was 400 um away
+}
+
+TEST_F(CalibrationTest, ImagesOfAnotherSizeEndIt) {
+  setOff();
+  cropImages(session_);
+  EXPECT_NE(result().message.find("px now, and were of 440 x 640 px"), std::string::npos) << result().message;
+  EXPECT_EQ(action_.state(), actionlib_msgs::GoalStatus::ABORTED);
+  needle_.expectRests(0.3);
+  EXPECT_FALSE(std::filesystem::exists(file_));
+}
+
+TEST_F(CalibrationTest, ThatOfOtherImagesIsNotMadeRightByTheTip) {
+  writeCalibration(file_, camera_.calibrationOfOthers(kBacklash));
+  const std::string before = text(), reason = "is of images of 880 x 1280 px, this one has 440 x 640 px";
+  session_.executive().restart("calibration");
+  session_.run(1.5);
+  const auto refused = ask("rezero");
+  EXPECT_FALSE(refused.success);
+  EXPECT_NE(refused.message.find(reason), std::string::npos) << refused.message;
+  EXPECT_EQ(text(), before);
+  EXPECT_TRUE(session_.diagnostics().ever("calibration: calibration", reason))
+      << session_.diagnostics().text("calibration: calibration");
 }
 
 TEST_F(CalibrationTest, AnotherCommandEndsIt) {

@@ -92,6 +92,10 @@ TEST_F(FocusTest, FailsWhenTheImagesStop) {
   expectFailure("no fresh image", [&] { specimen_.cell_is_silent = true; });
 }
 
+TEST_F(FocusTest, FailsWhenTheImagesAreCropped) {
+  expectFailure("px now, and were of 480 x 496 px", [&] { cropImages(session_); });
+}
+
 TEST_F(FocusTest, StopsWhenItIsCancelled) {
   prepare(0, 2e-6);
   action_.send({});

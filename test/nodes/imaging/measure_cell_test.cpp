@@ -9,6 +9,7 @@
 #include "nodes/display/cell_state_reader.h"
 #include "placed_specimen.h"
 #include "scripted_needle.h"
+#include "vision/calibration/calibration_file.h"
 
 namespace microinjection {
 namespace {
@@ -120,6 +121,29 @@ TEST_F(MeasureCellTest, ImagesAreRecordedWithASnapshotOfEachState) {
   }
   EXPECT_GT(frames, 10u);
   EXPECT_GT(std::filesystem::file_size(record_ + "/overlay.avi"), 10000 * frames);
+}
+
+/// A session with a camera of its own, whose images have been binned since its calibration: they have no scale.
+TEST(VisionCalibration, OfOtherImagesGivesNoScale) {
+  const SmallCamera camera;
+  VirtualSession session({"camera.source:=sim", "hand.device:=none"});
+  const std::string file = session.folder() / "calibrated.yaml";
+  PlacedSpecimen specimen(session, 28e-6);
+  session.add("vision", "{pixel_size: 0, calibration: " + file + "}");
+  session.add("microscope", camera.parameters(5, "needle: measured"));
+  const auto& states = session.world().hear<cell_microinjection::VisionState>("/vision/state");
+  const std::string reason = "is of images of 960 x 992 px, this one has 480 x 496 px";
+  for (const bool of_others : {true, false}) {
+    SCOPED_TRACE(of_others);
+    writeCalibration(file, of_others ? camera.calibrationOfOthers() : camera.calibration());
+    session.run(2.2);  // ten images
+    ASSERT_TRUE(states.newest());
+    EXPECT_EQ(states.newest()->pixel_size, of_others ? 0 : camera.pixel);
+    const auto answer = session.call<cell_microinjection::MeasureCell>("/vision/measure_cell");
+    EXPECT_FALSE(of_others && answer.success);
+    EXPECT_EQ(answer.message.find(reason) != std::string::npos, of_others) << answer.message;
+    EXPECT_EQ(session.diagnostics().text("vision: images").find(reason) != std::string::npos, of_others);
+  }
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <opencv2/core/mat.hpp>
 #include <optional>
 #include <sstream>
@@ -17,6 +18,7 @@
 #include "cell_microinjection/CellState.h"
 #include "cell_microinjection/VisionState.h"
 #include "virtual_session.h"
+#include "vision/calibration/camera_calibration.h"
 
 namespace microinjection {
 
@@ -32,6 +34,28 @@ struct SmallCamera {
     text << "{rate: " << rate << ", camera: {width: " << width << ", height: " << height << ", pixel_size: " << pixel
          << ", origin: [" << origin.x() << ", " << origin.y() << "]}" << (more.empty() ? "" : ", " + more) << "}";
     return text.str();
+  }
+  /// Its exact calibration, with the play of a rig (m).
+  CameraCalibration calibration(double backlash = 0) const {
+    CameraCalibration exact;
+    exact.date = "2025-03-04T05:06:07Z";
+    exact.image_size = {width, height};
+    exact.value[kPixelSize] = pixel;
+    exact.value[kAxisRatio] = 1;
+    exact.value[kBacklashX] = exact.value[kBacklashZ] = backlash;
+    exact.value[kTipU] = origin.x();
+    exact.value[kTipV] = origin.y();
+    for (const int parameter : {kPixelSize, kAngle, kSkew, kAxisRatio, kBacklashX, kBacklashZ, kTipU, kTipV})
+      exact.estimated[static_cast<std::size_t>(parameter)] = true;
+    exact.points = 32;
+    exact.tips = {exact.tipRecord(exact.date)};
+    return exact;
+  }
+  /// One that was made with images of four times as many pixels, before they were binned.
+  CameraCalibration calibrationOfOthers(double backlash = 0) const {
+    CameraCalibration others = calibration(backlash);
+    others.image_size *= 2;
+    return others;
   }
   /// px, of a place in the world (m)
   Eigen::Vector2d pixelOf(double x, double z) const { return origin + Eigen::Vector2d(x, -z) / pixel; }
@@ -116,6 +140,24 @@ class PlacedSpecimen {
   cell_microinjection::CellState cell;
   bool cell_is_silent = false;
 };
+
+/// What becomes of the microscope's images from now on.
+inline void alterImages(VirtualSession& session, const std::function<void(sensor_msgs::Image& image)>& change) {
+  session.executive().network().alter("/microscope/image_raw", [change](Passage passage) {
+    const auto image =
+        boost::make_shared<sensor_msgs::Image>(*boost::static_pointer_cast<const sensor_msgs::Image>(passage.message));
+    change(*image);
+    passage.message = image;
+    return std::vector<Passage>{passage};
+  });
+}
+/// The camera was cropped: they lack their last rows.
+inline void cropImages(VirtualSession& session) {
+  alterImages(session, [](sensor_msgs::Image& image) {
+    image.height -= 40;
+    image.data.resize(std::size_t{image.step} * image.height);
+  });
+}
 
 /// The grey levels of an image of the virtual microscope, CV_8U; they are the message's.
 inline cv::Mat greyLevels(const sensor_msgs::Image& image) {

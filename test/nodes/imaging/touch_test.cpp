@@ -47,6 +47,12 @@ class TouchTest : public testing::Test {
     EXPECT_TRUE(session_.until([&] { return action_.ended(); }, 60));
     return action_.ended() ? *action_.result() : cell_microinjection::FindTouchResult();
   }
+  void setOff() {
+    needle_.enable();
+    send();
+    ASSERT_TRUE(session_.until([&] { return needle_.place().z() < kRadius + kAbove - 1e-6 || action_.ended(); }, 20));
+    ASSERT_FALSE(action_.ended()) << action_.result()->message;
+  }
   void expectRefusal(double travel, const std::string& reason) {
     send(travel);
     const auto refused = result();
@@ -89,11 +95,18 @@ TEST_F(TouchTest, RefusesADisabledControllerAndATravelThatIsTooLong) {
   EXPECT_NEAR(needle_.lowest(), kRadius + kAbove, 1e-9);
 }
 
+TEST_F(TouchTest, StopsWhenTheImagesAreCropped) {
+  setOff();
+  cropImages(session_);
+  const auto result = this->result();
+  EXPECT_NE(result.message.find("px now, and were of 360 x 420 px"), std::string::npos) << result.message;
+  EXPECT_EQ(action_.state(), actionlib_msgs::GoalStatus::ABORTED);
+  needle_.expectRests(0.3);
+  EXPECT_GT(needle_.lowest(), kRadius);
+}
+
 TEST_F(TouchTest, StopsWhenItIsCancelled) {
-  needle_.enable();
-  send();
-  ASSERT_TRUE(session_.until([&] { return needle_.place().z() < kRadius + kAbove - 1e-6 || action_.ended(); }, 20));
-  ASSERT_FALSE(action_.ended()) << action_.result()->message;
+  setOff();
   action_.cancel();
   result();
   EXPECT_EQ(action_.state(), actionlib_msgs::GoalStatus::PREEMPTED);

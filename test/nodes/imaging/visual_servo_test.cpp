@@ -18,7 +18,7 @@ class VisualServoTest : public testing::Test {
   static constexpr double kX = 164, kY = 200;  // px
 
   VisualServoTest() {
-    writeCalibration(file_, calibration());
+    writeCalibration(file_, camera_.calibration(kBacklash));
     session_.add("micromanipulator", "{device: {backlash: 2.0e-6}}");
     session_.add("cell_simulator");
     session_.add("injection_controller");
@@ -30,21 +30,6 @@ class VisualServoTest : public testing::Test {
     session_.run(0.5);
   }
 
-  /// That of the virtual microscope.
-  CameraCalibration calibration() const {
-    CameraCalibration exact;
-    exact.date = "2025-03-04T05:06:07Z";
-    exact.value[kPixelSize] = camera_.pixel;
-    exact.value[kAxisRatio] = 1;
-    exact.value[kBacklashX] = exact.value[kBacklashZ] = kBacklash;
-    exact.value[kTipU] = camera_.origin.x();
-    exact.value[kTipV] = camera_.origin.y();
-    for (const int parameter : {kPixelSize, kAngle, kSkew, kAxisRatio, kBacklashX, kBacklashZ, kTipU, kTipV})
-      exact.estimated[static_cast<std::size_t>(parameter)] = true;
-    exact.points = 32;
-    exact.tips = {exact.tipRecord(exact.date)};
-    return exact;
-  }
   cell_microinjection::GoToPixelResult go() {
     cell_microinjection::GoToPixelGoal goal;
     goal.x = kX;
@@ -99,6 +84,17 @@ TEST_F(VisualServoTest, RefusesADisabledController) {
   EXPECT_LT((needle_.place() - start).norm(), 1e-9);
 }
 
+TEST_F(VisualServoTest, RefusesTheCalibrationOfOtherImages) {
+  writeCalibration(file_, camera_.calibrationOfOthers(kBacklash));
+  needle_.enable();
+  const Eigen::Vector3d start = needle_.place();
+  const auto result = go();
+  EXPECT_FALSE(result.success);
+  EXPECT_NE(result.message.find("is of images of 880 x 1280 px, this one has 440 x 640 px"), std::string::npos)
+      << result.message;
+  EXPECT_LT((needle_.place() - start).norm(), 1e-9);
+}
+
 /// It is the place of the tip at that time.
 TEST_F(VisualServoTest, AnOldImageIsNotUsed) {
   needle_.enable();
@@ -122,9 +118,20 @@ TEST_F(VisualServoTest, AnOldImageIsNotUsed) {
   EXPECT_LT((needle_.place() - start).norm(), 1e-9);
 }
 
-enum class ImageFault { kStops, kRepeats, kRepeatsOld, kLate, kBlack, kWithoutStamp };
+enum class ImageFault {
+  kStops,
+  kRepeats,
+  kRepeatsOld,
+  kLate,
+  kBlack,
+  kWithoutStamp,
+  kCropped,
+  kSecondCamera,
+  kSecondVision
+};
 void PrintTo(ImageFault fault, std::ostream* out) {
-  static const char* const names[] = {"Stops", "Repeats", "RepeatsOld", "IsLate", "IsBlack", "HasNoStamp"};
+  static const char* const names[] = {"Stops",      "Repeats",   "RepeatsOld",   "IsLate",        "IsBlack",
+                                      "HasNoStamp", "IsCropped", "OfTwoCameras", "SeenByTwoNodes"};
   *out << names[static_cast<int>(fault)];
 }
 
@@ -132,6 +139,15 @@ void PrintTo(ImageFault fault, std::ostream* out) {
 class ImageFaultTest : public VisualServoTest, public testing::WithParamInterface<ImageFault> {
  protected:
   void strike() {
+    if (GetParam() == ImageFault::kCropped) return cropImages(session_);
+    if (GetParam() == ImageFault::kSecondVision) {
+      return session_.executive().network().alter("/vision/state", [](Passage passage) {
+        const auto state = boost::make_shared<cell_microinjection::VisionState>(
+            *boost::static_pointer_cast<const cell_microinjection::VisionState>(passage.message));
+        state->injection_pipette.x -= 40;
+        return std::vector<Passage>{passage, {"/stranger", state, 0.03}};
+      });
+    }
     boost::shared_ptr<const sensor_msgs::Image> first;
     session_.executive().network().alter(
         "/microscope/image_raw", [first, fault = GetParam()](Passage passage) mutable -> std::vector<Passage> {
@@ -144,9 +160,18 @@ class ImageFaultTest : public VisualServoTest, public testing::WithParamInterfac
           if (fault == ImageFault::kLate) passage.delay = 0.6;
           if (fault == ImageFault::kBlack) std::fill(image->data.begin(), image->data.end(), 0);
           if (fault == ImageFault::kWithoutStamp) image->header.stamp = ros::Time();
+          if (fault == ImageFault::kSecondCamera) {
+            std::rotate(image->data.begin(), image->data.begin() + 40, image->data.end());  // another picture
+            return {passage, {"/stranger", image, 0.03}};
+          }
           passage.message = image;
           return {passage};
         });
+  }
+  bool said() {
+    if (action_.ended() && action_.result()->message.find(reason()) != std::string::npos) return true;
+    const auto& all = session_.diagnostics();
+    return all.ever("vision: images", reason()) || all.ever("visual_servo: approach", reason());
   }
   std::string reason() const {
     switch (GetParam()) {
@@ -159,6 +184,12 @@ class ImageFaultTest : public VisualServoTest, public testing::WithParamInterfac
         return "s old";
       case ImageFault::kRepeatsOld:
         return "its stamp is that of the last one";
+      case ImageFault::kCropped:
+        return "px now, and were of 440 x 640 px";
+      case ImageFault::kSecondCamera:
+        return "sent by two nodes, /microscope and /stranger";
+      case ImageFault::kSecondVision:
+        return "sent by two nodes, /stranger and /vision";
       case ImageFault::kStops:
         break;
     }
@@ -183,12 +214,13 @@ TEST_P(ImageFaultTest, HoldsTheNeedleAndIsSaid) {
   EXPECT_LT((needle_.place() - rests).norm(), 0.02e-6) << "it goes on without an image";
   EXPECT_GT(needle_.lowest(), start.z() - 0.1e-6) << "it goes to the cell";
   EXPECT_FALSE(action_.ended() && action_.result()->success);
-  EXPECT_TRUE(session_.diagnostics().ever("vision: images", reason())) << session_.diagnostics().text("vision: images");
+  EXPECT_TRUE(said()) << session_.diagnostics().text("vision: images");
 }
 
 INSTANTIATE_TEST_SUITE_P(Matrix, ImageFaultTest,
                          testing::Values(ImageFault::kStops, ImageFault::kRepeats, ImageFault::kRepeatsOld,
-                                         ImageFault::kLate, ImageFault::kBlack, ImageFault::kWithoutStamp),
+                                         ImageFault::kLate, ImageFault::kBlack, ImageFault::kWithoutStamp,
+                                         ImageFault::kCropped, ImageFault::kSecondCamera, ImageFault::kSecondVision),
                          testing::PrintToStringParamName());
 
 }  // namespace

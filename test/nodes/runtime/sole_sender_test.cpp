@@ -31,6 +31,22 @@ TEST(SoleSender, ASuccessorTakesOver) {
   EXPECT_EQ(senders.rivals(at(0.6)), "");
 }
 
+TEST(SoleSender, OneThatTellsChangesOnlyIsARivalWhileItIsThere) {
+  SoleSender senders;
+  senders.receive("/pedal", at(0));
+  EXPECT_EQ(senders.rivals(at(100), true), "") << "one that has said nothing yet is none";
+  senders.receive("/stranger", at(100));
+  EXPECT_EQ(senders.rivals(at(200), true), "/pedal and /stranger");
+  EXPECT_EQ(senders.rivals(at(200), false), "") << "one of them is gone";
+}
+
+TEST(SoleSender, RefusesWhatComesFromTwo) {
+  SoleSender senders;
+  EXPECT_EQ(senders.refusalOf("/camera", at(0)), "");
+  EXPECT_EQ(senders.refusalOf("/stranger", at(0.1)),
+            "it is sent by two nodes, /camera and /stranger: none counts until one has stopped");
+}
+
 TEST(SoleSender, OneMessageOfAStrangerIsEnough) {
   SoleSender senders;
   for (double t = 0; t < 1; t += 0.001) senders.receive("/sensor", at(t));

@@ -113,6 +113,30 @@ TEST_F(ButtonsOnChangeTest, ButNotPastAPoseThatWasStale) {
   EXPECT_FALSE(bridge_.follows());
 }
 
+/// However long ago the other one has told a change, it may tell the next: neither counts while both are there.
+TEST_F(ButtonsOnChangeTest, OfTwoNodesAreNoButtonsAndBothAreNamed) {
+  for (const auto& [topic, leads] : {std::pair(kClutch, 0), std::pair(kPresent, 1)}) {
+    SCOPED_TRACE(topic);
+    sayAllGood(0.2);
+    silenceButtons();
+    bridge_.run(2);
+    const std::string name = std::string("stranger_") + (leads ? "operator" : "clutch");
+    TestNode& stranger = bridge_.session().addTestNode(name);
+    stranger.sayNow(topic, joyMessage({leads}));
+    bridge_.run(1.5);
+    EXPECT_FALSE(bridge_.follows());
+    world().sayNow(topic, joyMessage({leads}));
+    bridge_.run(1.5);
+    EXPECT_FALSE(bridge_.follows());
+    const std::string said = bridge_.session().diagnostics().text("haptic_bridge: inputs");
+    EXPECT_NE(said.find(std::string(topic) + " is sent by two nodes, /" + name + " and /world"), std::string::npos)
+        << said;
+    bridge_.session().executive().kill(name);
+    bridge_.run(1);
+    EXPECT_TRUE(bridge_.follows()) << "what its own device has told last";
+  }
+}
+
 TEST_F(ButtonsOnChangeTest, ATapLeavesNoButtonHeldDown) {
   const std::pair<const char*, bool> buttons[] = {{kClutch, true}, {kPresent, false}};
   for (const int tapped : {2, 3}) {

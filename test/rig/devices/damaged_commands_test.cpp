@@ -47,15 +47,19 @@ double offTheWay(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const E
   return (from + share * way - place).norm();
 }
 
+constexpr double kOffAtAnySpeed = 1e-6;  // m
+
 /// Those on a serial line; a network's datagrams have a checksum.
 using AllSerial = testing::Types<TestedZaber, TestedMp285, TestedEppendorf, TestedTransferman, TestedScientifica>;
 template <typename Tested>
 class DamagedCommandsTest : public testing::Test {};
 TYPED_TEST_SUITE(DamagedCommandsTest, AllSerial, Names);
 
-TYPED_TEST(DamagedCommandsTest, MoveTheNeedleByLittleAndNoPlaceThatIsToldIsFarFromTheTruth) {
-  constexpr double kSpeed = 100e-6, kNoLonger = 0.2;  // m/s, s
-  constexpr double kOff = kSpeed * kNoLonger + 2e-6;  // m
+/// Of a move of 0.6 s, aslant or along one axis.
+template <typename TypeParam>
+void expectDamagedCommandsMoveLittle(double speed) {
+  constexpr double kNoLonger = 0.2, kDuration = 0.6;            // s
+  const double off_limit = speed * kNoLonger + kOffAtAnySpeed;  // m
   int damaged = 0;
   for (unsigned seed = 1; seed <= 40; ++seed) {
     const auto device = std::make_shared<DamagedCommands>(std::make_shared<typename TypeParam::Emulator>(), seed);
@@ -63,9 +67,10 @@ TYPED_TEST(DamagedCommandsTest, MoveTheNeedleByLittleAndNoPlaceThatIsToldIsFarFr
     ASSERT_TRUE(rig.runUntilReady(10));
     const auto place = [&] { return TypeParam::config().joints.toJoints(TypeParam::inJointOrder(device->position())); };
     const Eigen::Vector3d from = place();
-    const Eigen::Vector3d to = from + Eigen::Vector3d(40e-6, -20e-6, 40e-6);
+    const Eigen::Vector3d way = (seed % 2 ? Eigen::Vector3d(2, -1, 2) : Eigen::Vector3d(1, 0, 0)).normalized();
+    const Eigen::Vector3d to = from + speed * kDuration * way;
     device->damageAfter(static_cast<int>(seed));
-    rig.driver().moveTo(to, kSpeed);
+    rig.driver().moveTo(to, speed);
     double off = 0, untrue = 0;
     rig.run(3, [&] {
       off = std::max(off, offTheWay(from, to, place()));
@@ -73,10 +78,17 @@ TYPED_TEST(DamagedCommandsTest, MoveTheNeedleByLittleAndNoPlaceThatIsToldIsFarFr
       if (told) untrue = std::max(untrue, (told->joints - place()).norm());
     });
     damaged += device->damaged();
-    EXPECT_LT(off, kOff) << "seed " << seed << ", " << rig.driver().reason();
-    EXPECT_LT(untrue, kOff) << "seed " << seed << ", " << rig.driver().reason();
+    EXPECT_LT(off, off_limit) << "seed " << seed << ", " << rig.driver().reason();
+    EXPECT_LT(untrue, off_limit) << "seed " << seed << ", " << rig.driver().reason();
   }
   EXPECT_EQ(damaged, 40);
+}
+
+TYPED_TEST(DamagedCommandsTest, MoveTheNeedleByLittleAndNoPlaceThatIsToldIsFarFromTheTruth) {
+  for (const double speed : {10e-6, 100e-6, std::min(1000e-6, TypeParam::kFastest)}) {  // m/s
+    SCOPED_TRACE(1e6 * speed);
+    expectDamagedCommandsMoveLittle<TypeParam>(speed);
+  }
 }
 
 }  // namespace

@@ -36,6 +36,7 @@ std::size_t commandLength(unsigned char letter) {
     case 'b':
     case 'o':
     case 'n':
+    case 'e':
     case 'r':
       return 2;
     case 'V':
@@ -156,7 +157,7 @@ void Mp285Emulator::handleCommand(double time) {
       return reply("\r", time);
     case 'r':
       return;  // a reset has no reply
-    default:
+    default:   // also n and e: it has no display and no programs, thus no pause to end
       absolute_ = command_[0] == 'b' ? false : command_[0] == 'a' ? true : absolute_;
       reply("\r", time);
   }

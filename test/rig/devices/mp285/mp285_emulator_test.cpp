@@ -43,6 +43,19 @@ TEST(Mp285Emulator, AnswersALineFeedByACarriageReturn) {
   EXPECT_EQ(client.answers("a\r\n"), "4\r\r");
 }
 
+/// What acq4 sends (mp285.py) besides moves, and reads to the carriage return: it waits for ever for an answer that is
+/// none. `R` and `p` are of an Arduino between acq4 and the device, which alone knows them; `r` is not answered.
+TEST(Mp285Emulator, AnswersTheCommandsOfAcq4) {
+  Mp285Client client;
+  EXPECT_EQ(client.answers(std::string("V\x09\x83\r")), "\r");  // 777 um/s, fine, when it starts
+  for (const char* command : {"a\r", "b\r", "e\r", "n\r", "o\r"}) EXPECT_EQ(client.answers(command), "\r") << command;
+  EXPECT_EQ(client.answers(move(25)), "\r") << "still in relative mode";
+  EXPECT_NEAR(client.device->position().x(), 1e-6, 1e-12);
+  EXPECT_EQ(client.answers("r\r"), "");
+  EXPECT_EQ(client.answers("c\r").size(), 13u);
+  EXPECT_EQ(client.answers("\x03"), "\r");
+}
+
 TEST(Mp285Emulator, TellsErrorsAndTheirSumsAsCharacters) {
   Mp285Client client;
   EXPECT_EQ(client.answers("x"), "4\r");
