@@ -207,6 +207,7 @@ void InjectionControllerNode::step(const Cycle::Tick& tick) {
   const bool acts_on_sensor = parameters_.force_source == "measured";
   force_lives_.step(needle ? std::optional<Eigen::Vector3d>(needle->translation()) : std::nullopt,
                     acts_on_sensor && feelsContact());
+  input.force_is_new = force_.takeUpdates() != nullptr;
   if (needle) {
     input.needle = needle->translation();
     input.axis = needle->linear().col(2);

@@ -76,6 +76,7 @@ std::string Witnesses::fault(const ros::Time& now) const {
 void Witnesses::fill(const Eigen::Isometry3d& needle, const ros::Time& now, InjectionController::Input& input) {
   force_lives_.step(needle.translation());
   input.witness = validForce(force_.get(now), needle.linear());
+  input.witness_is_new = force_.takeUpdates() != nullptr;
   input.witness_fault = fault(now);
   input.cell_changed = !changed_.isZero() && !isDue(changed_, now, kSettles);
   if (can_be_punctured_ && !isDue(cell_received_, now, kCellTimeout)) input.predicted_inside = inside_;

@@ -15,6 +15,8 @@ namespace microinjection {
 class SoleSender {
  public:
   static constexpr double kHandOver = 0.5;  ///< s without the other one, until a sender is the only one
+  /// The same of a topic that has changes only, while both are there: a node that was killed is there for ever.
+  static constexpr double kHandOverOfChanges = 3;
 
   void receive(const std::string& sender, const ros::Time& now) {
     if (sender != sender_) {
@@ -34,7 +36,7 @@ class SoleSender {
   /// Both names while two nodes send; else empty. `both_are_there`: of a topic that has changes only, whose other
   /// sender may be silent for long and then send the next one.
   std::string rivals(const ros::Time& now, bool both_are_there = false) const {
-    if (other_.empty() || (!both_are_there && isDue(other_sent_, now, kHandOver))) return "";
+    if (other_.empty() || isDue(other_sent_, now, both_are_there ? kHandOverOfChanges : kHandOver)) return "";
     return other_ < sender_ ? other_ + " and " + sender_ : sender_ + " and " + other_;
   }
 

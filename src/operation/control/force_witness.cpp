@@ -39,11 +39,12 @@ void ForceWitness::rearm() {
 void ForceWitness::skip() { monitor_.skip(); }
 
 void ForceWitness::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis,
-                        const std::optional<Eigen::Vector3d>& force) {
+                        const std::optional<Eigen::Vector3d>& force, bool is_new) {
   tip_ = tip;
   axis_ = axis;
   heard_ = force && force->allFinite();
   if (!heard_) return monitor_.skip();
+  if (!is_new) return monitor_.move(tip, axis);
   monitor_.step(tip, axis, *force);
   if (monitor_.confirmed() && !*monitor_.confirmed()) rearm();  // it was noise
   if (!monitor_.touched()) return;

@@ -32,8 +32,10 @@ class ForceWitness {
   void rearm();
   void skip();
 
-  /// After the controller's monitor; `force` (N, on the tip, `world`): empty without a valid one.
-  void step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, const std::optional<Eigen::Vector3d>& force);
+  /// After the controller's monitor; `force` (N, on the tip, `world`): empty without a valid one. `is_new`: it is
+  /// another reading than that of the last step.
+  void step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, const std::optional<Eigen::Vector3d>& force,
+            bool is_new = true);
 
   /// What an image shows of a tip before its cell.
   struct Image {

@@ -205,11 +205,13 @@ void InjectionController::observe(const Input& input, bool force_valid, double d
   }
   denies_puncture_ = input.predicted_inside && !*input.predicted_inside;
   witness_fault_ = input.witness_fault;
-  witness_.step(*input.needle, input.axis, input.witness);
-  if (force_valid) {
+  witness_.step(*input.needle, input.axis, input.witness, input.witness_is_new);
+  if (!force_valid) {
+    monitor_.skip();
+  } else if (input.force_is_new) {
     monitor_.step(*input.needle, input.axis, *input.force);
   } else {
-    monitor_.skip();
+    monitor_.move(*input.needle, input.axis);
   }
   witness_.see(monitor_, input.image, dt);
   if (!byHand()) return;

@@ -69,10 +69,12 @@ class InjectionController {
     std::optional<Eigen::Vector3d> target;  ///< m, `world`
     std::optional<Eigen::Vector3d> needle;  ///< m, tip in `world`
     std::optional<Eigen::Vector3d> force;   ///< N, of the cell on the tip, `world`
+    bool force_is_new = true;               ///< another reading than that of the last step
     std::optional<InjectorReport> injector;
     std::string rig_hold;                             ///< why the rig does not follow set-points; empty: it does
     std::optional<ExpectedPuncture> expected;         ///< of the outermost membrane
     std::optional<Eigen::Vector3d> witness;           ///< N, as `force`, of the source that it is not: see ForceWitness
+    bool witness_is_new = true;                       ///< as force_is_new
     std::string witness_fault;                        ///< why it cannot be believed; empty: it can, or there is none
     std::optional<Image> image;                       ///< of the tip before the cell, when it is sure
     std::optional<bool> predicted_inside;             ///< whether the cell whose force is predicted is punctured

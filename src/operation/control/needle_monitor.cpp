@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace microinjection {
 namespace {
@@ -54,6 +55,7 @@ double NeedleMonitor::promptForce() const { return puncture_ ? puncture_->meanFo
 
 void NeedleMonitor::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, const Eigen::Vector3d& force) {
   const double axial = force.dot(axis);
+  stride_ += (1 + std::exchange(moves_, 0) - stride_) / kSmoothed;
   punctured_ = false;
   if (!noise_.ready()) {
     noise_.add(axial);
@@ -72,13 +74,24 @@ void NeedleMonitor::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis
     if (!contact_->step(axial, advance)) return;
     contact_point_ = tip;
   }
-  depth_ = depthOf(tip, axis);
-  max_depth_ = std::max(max_depth_, depth_);
+  follow(tip, axis);
   if (!confirmed_) confirmContact(axial);
   punctured_ = fell;
   if (!fell) return;
   force_before_ = peak_mean_force_;
   peak_mean_force_ = 0;
+}
+
+void NeedleMonitor::move(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis) {
+  punctured_ = false;
+  ++moves_;
+  follow(tip, axis);
+}
+
+void NeedleMonitor::follow(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis) {
+  if (!contact_point_) return;
+  depth_ = depthOf(tip, axis);
+  max_depth_ = std::max(max_depth_, depth_);
 }
 
 void NeedleMonitor::confirmContact(double axial) {

@@ -36,6 +36,9 @@ class NeedleMonitor {
   /// Adds a sample: `force` (N, on the tip) and `tip` (m), both in `world`; `axis`: unit, out of
   /// the cell. The first samples only measure the noise: the needle must rest, out of the cell.
   void step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, const Eigen::Vector3d& force);
+  /// Only the tip moves. Each reading of a sensor counts once: as several samples, its noise would have another
+  /// distribution than the one whose false alarms are bounded.
+  void move(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis);
 
   bool ready() const { return noise_.ready(); }
   double offset() const { return contact_ ? contact_->offset() : noise_.offset(); }  ///< N, of the force at rest
@@ -56,11 +59,12 @@ class NeedleMonitor {
   std::optional<bool> confirmed() const { return confirmed_; }
   bool punctured() const { return punctured_; }         ///< in the last step
   double forceBefore() const { return force_before_; }  ///< N, crest before the last puncture
-  /// Samples to detect a puncture at a force (N, along the pipette above the offset).
-  double latencyAt(double force) const { return puncture_ ? puncture_->latency(force) : 0; }
+  /// Steps and moves to detect a puncture at a force (N, along the pipette above the offset).
+  double latencyAt(double force) const { return puncture_ ? puncture_->latency(force) * stride_ : 0; }
 
  private:
   void confirmContact(double axial);
+  void follow(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis);
 
   DetectionConfig config_;
   ForceNoise noise_;
@@ -70,6 +74,8 @@ class NeedleMonitor {
   std::optional<double> travel_;                  ///< m, of the tip into the cell, at the last sample
   std::optional<bool> confirmed_;
   int confirmation_samples_ = 0;
+  int moves_ = 0;                ///< since the last step
+  double stride_ = 1;            ///< steps and moves for each step, a recent mean
   double confirmation_sum_ = 0;  ///< N
   double depth_ = 0, max_depth_ = 0;
   double peak_ = 0, peak_mean_force_ = 0, force_before_ = 0;

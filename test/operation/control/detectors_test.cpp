@@ -8,6 +8,7 @@
 
 #include "operation/control/contact_detector.h"
 #include "operation/control/force_noise.h"
+#include "operation/control/needle_monitor.h"
 #include "operation/control/puncture_detector.h"
 
 namespace microinjection {
@@ -87,6 +88,25 @@ TEST_F(DetectorsTest, ContactAlarmsFalselyAsOftenAsDesigned) {
     EXPECT_LT(alarms, 130) << force;
     EXPECT_GT(alarms, 40) << force;
   }
+}
+
+/// A sensor that stalls while its noise is measured, and later on, repeats readings; each counts once.
+TEST_F(DetectorsTest, AReadingThatIsReadOftenIsOneSample) {
+  int contacts = 0;
+  for (unsigned seed = 1; seed <= 100; ++seed) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> noise(0, 50e-9);  // N
+    NeedleMonitor monitor{DetectionConfig()};
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();
+    for (int i = 0; i < 3000; ++i) {
+      const bool is_new = i % 600 < 500 ? i % 45 == 0 : true;
+      if (is_new) force.z() = noise(random);
+      is_new ? monitor.step(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ(), force)
+             : monitor.move(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ());
+    }
+    contacts += monitor.touched();
+  }
+  EXPECT_EQ(contacts, 0);
 }
 
 TEST_F(DetectorsTest, DriftOfTheSensorIsNoContact) {
