@@ -34,6 +34,14 @@ std::string tooCoarse(const std::string& what, double requested, double sent, co
   return out.str();
 }
 
+std::string tooLarge(const std::string& what, double sent, double unit, double zero, double largest) {
+  const double number = (sent - zero) / unit;
+  if (number <= largest + 1e-6) return "";
+  std::ostringstream out;
+  out << what << " = " << sent << " Pa: " << number << " in the device's line, at most " << largest;
+  return out.str();
+}
+
 std::string other(const std::string& what, double requested, double set, const std::string& unit) {
   if (near(requested, set, 1e-6)) return "";
   std::ostringstream out;
@@ -72,13 +80,16 @@ std::string InjectorProtocol::refusal(const InjectionPulse& requested) const {
     return out.str();
   }
   const InjectionPulse sent = asSent(requested);
-  const std::string coarse = tooCoarse("pulse pressure", requested.pressure, sent.pressure, "Pa");
+  std::string coarse = tooCoarse("pulse pressure", requested.pressure, sent.pressure, "Pa");
+  if (coarse.empty()) coarse = tooLarge("pulse pressure", sent.pressure, pressure_unit, pressure_zero, largest);
   return coarse.empty() ? tooCoarse("pulse duration", requested.duration, sent.duration, "s") : coarse;
 }
 
 std::string InjectorProtocol::balanceRefusal(double pressure) const {
   if (balance.empty()) return "the device's balance pressure is set by hand: its protocol has no line for it";
-  return tooCoarse("balance pressure", pressure, balanceAsSent(pressure), "Pa");
+  const double sent = balanceAsSent(pressure);
+  const std::string coarse = tooCoarse("balance pressure", pressure, sent, "Pa");
+  return coarse.empty() ? tooLarge("balance pressure", sent, pressure_unit, pressure_zero, largest) : coarse;
 }
 
 InjectorProtocol::Values InjectorProtocol::pulseValues(const InjectionPulse& requested) const {
@@ -92,11 +103,16 @@ InjectorProtocol::Values InjectorProtocol::balanceValues(double pressure) const 
   Values values;
   for (const Placeholder& placeholder : pressurePlaceholders(pressure_unit, pressure_zero))
     values[placeholder.name] = placeholder.toUnit(pressure);
+  values[kCount] = 0;
   return values;
 }
 
 std::string InjectorProtocol::misread(const Exchange& exchange, const std::smatch& groups, const Values& values) {
   if (exchange.confirm.empty()) return "";
+  if (exchange.confirm == kLine) {
+    const std::string line = exchange.send.fill(values);
+    return groups[1].str() == line ? "" : "it has understood " + groups[1].str() + " instead of " + line;
+  }
   const double wanted = values.at(exchange.confirm);
   const auto read = parseNumber<double>(groups[1].str());
   if (read && std::abs(*read - wanted) <= 1e-6 * std::max(1.0, std::abs(wanted))) return "";

@@ -24,9 +24,9 @@ namespace microinjection {
 /// Placeholders for numbers in a line: {pressure_Pa}, {pressure_hPa}, {pressure_kPa},
 /// {pressure_psi}, and {pressure} in the device's own unit (`pressure_unit`, `pressure_zero`); in
 /// `pulse` and `verify` also {duration_s} and {duration_ms}. In these they have the pulse's values,
-/// elsewhere the balance pressure. Placeholders for data that only the user has, such as the unpublished
-/// number of a command: {NAME}, or {NAME:LENGTH}, from codes/NAME. Regular expressions (ECMAScript)
-/// must match a whole reply.
+/// elsewhere the balance pressure. {count} is a digit or letter, another one in each line.
+/// Placeholders for data that only the user has, such as the unpublished number of a command: {NAME},
+/// or {NAME:LENGTH}, from codes/NAME. Regular expressions (ECMAScript) must match a whole reply.
 class InjectorProtocol {
  public:
   using Values = std::map<std::string, double>;  ///< numbers by the names of their placeholders
@@ -34,7 +34,8 @@ class InjectorProtocol {
   struct Exchange {
     LineTemplate send;
     std::regex expect;
-    std::string confirm;   ///< name of the number that the first group of `expect` must equal; empty: none
+    std::string confirm;   ///< what the first group of `expect` must be: the number of this name, or the `line`
+                           ///< as sent; empty: none
     double timeout = 0.5;  ///< s, for the reply
   };
   using Exchanges = std::vector<Exchange>;
@@ -51,8 +52,10 @@ class InjectorProtocol {
   double query_period = 0.2;  ///< s
   bool timed = false;         ///< a pulse lasts until `stop`, which is sent when its duration is over
   double stop_latency = 0;    ///< s, from sending `stop` until the device obeys; it is sent so much earlier
+  double stop_apart = 0;      ///< s between two stops that the device hears apart, see Wire::setStopsApart(); 0: any
   double pressure_unit = 1;   ///< Pa, of {pressure} and of a queried pressure
   double pressure_zero = 0;   ///< Pa, gauge, at which those are 0
+  double largest = 1e9;       ///< number that the device understands for {pressure}
   std::optional<double> pulse_pressure;  ///< Pa, gauge, if no line has a placeholder for it
   std::optional<double> pulse_duration;  ///< s, if no line has a placeholder for it
   std::regex refuse;                     ///< a reply that refuses the command

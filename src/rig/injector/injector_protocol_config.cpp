@@ -64,7 +64,8 @@ std::regex readRegex(ConfigReader& reader, const std::string& key, Codes& codes)
   }
 }
 
-Exchange readExchange(ConfigReader& reader, Codes& codes, const Names& placeholders) {
+Exchange readExchange(ConfigReader& reader, Codes& codes, Names placeholders) {
+  placeholders.push_back(kCount);
   Exchange exchange;
   std::string line;
   readPlainText(reader, "send", line, ConfigReader::kRequired);
@@ -75,9 +76,10 @@ Exchange readExchange(ConfigReader& reader, Codes& codes, const Names& placehold
     reader.error("send", error.what());
   }
   exchange.expect = readRegex(reader, "expect", codes);
+  placeholders.back() = kLine;
   reader.choice("confirm", exchange.confirm, placeholders);
   if (!exchange.confirm.empty() && exchange.expect.mark_count() < 1) {
-    reader.error("expect", "must have a group for the number that is to be confirmed");
+    reader.error("expect", "must have a group for what is to be confirmed");
   }
   reader.number("timeout", exchange.timeout, Range::positive());
   return exchange;
@@ -128,6 +130,7 @@ InjectorProtocol InjectorProtocol::read(ConfigReader& reader) {
   protocol.framing = readFraming(reader);
   reader.number("pressure_unit", protocol.pressure_unit, Range::positive());
   reader.number("pressure_zero", protocol.pressure_zero);
+  reader.number("largest", protocol.largest, Range::positive());
   Codes codes(reader.section("codes"));
   const std::vector<Placeholder> pressures = pressurePlaceholders(protocol.pressure_unit, protocol.pressure_zero);
   const std::vector<Placeholder> durations = durationPlaceholders();
@@ -148,6 +151,7 @@ InjectorProtocol InjectorProtocol::read(ConfigReader& reader) {
   if (protocol.timed && protocol.stop.empty()) reader.error("timed", "needs stop, which ends the pulse");
   if (protocol.timed && !protocol.verify.empty()) reader.error("verify", "must be left out where timed is true");
   reader.number("stop_latency", protocol.stop_latency, Range::nonNegative());
+  reader.number("stop_apart", protocol.stop_apart, Range::nonNegative());
   if (reader.has("ignore")) protocol.framing.ignore = readRegex(reader, "ignore", codes);
   protocol.pulse_pressure =
       readFixed(reader, "pulse_pressure", usesPlaceholder(protocol.pulse, pressures), Range::finite());

@@ -1,5 +1,6 @@
 #include "rig/injector/injector_registry.h"
 
+#include "rig/injector/arduino_emulator.h"
 #include "rig/injector/femtojet_emulator.h"
 #include "rig/injector/output_module_emulator.h"
 
@@ -18,6 +19,7 @@ Injector outputModule(const std::string& name, OutputModuleConfig::Kind kind) {
 
 const std::vector<Injector>& injectors() {
   static const std::vector<Injector> all{
+      {"arduino", 9600, [] { return std::make_shared<ArduinoEmulator>(); }},
       {"femtojet", 9600, [] { return std::make_shared<FemtojetEmulator>(); }},
       outputModule("relay", OutputModuleConfig::Kind::kRelays),
       outputModule("voltage", OutputModuleConfig::Kind::kVoltage),

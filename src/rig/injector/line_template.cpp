@@ -6,6 +6,7 @@
 #include <regex>
 
 #include "base/errors.h"
+#include "rig/injector/protocol_placeholders.h"
 
 namespace microinjection {
 namespace {
@@ -62,8 +63,11 @@ std::string LineTemplate::fill(const std::map<std::string, double>& values) cons
   std::string line;
   for (const Piece& piece : pieces_) {
     line += piece.text;
-    if (!piece.name.empty())
+    if (piece.name == kCount) {
+      line += kCounts[static_cast<std::size_t>(values.at(kCount))];
+    } else if (!piece.name.empty()) {
       line += written(toDecimals(values.at(piece.name), piece.decimals), piece.width, piece.decimals);
+    }
   }
   return line;
 }

@@ -27,6 +27,13 @@ inline std::vector<Placeholder> pressurePlaceholders(double unit, double zero) {
 
 inline std::vector<Placeholder> durationPlaceholders() { return {{"duration_s", 1}, {"duration_ms", 1e-3}}; }
 
+/// A character that differs in successive lines, so that a late answer does not confirm a later line;
+/// 0 in the guarded stop. Without the letters that are commands of an Arduino, which takes a command
+/// whose begin was lost for another one.
+constexpr char kCount[] = "count";
+constexpr char kCounts[] = "0123456789ABDEFGHIJKLMNOPQRSTUVWXYZadefghijklmnopqrstuvwyz";
+constexpr char kLine[] = "line";  ///< to confirm: the line itself
+
 inline std::vector<std::string> names(const std::vector<Placeholder>& placeholders) {
   std::vector<std::string> all;
   for (const Placeholder& placeholder : placeholders) all.push_back(placeholder.name);

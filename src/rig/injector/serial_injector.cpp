@@ -23,11 +23,14 @@ SerialInjector::SerialInjector(std::unique_ptr<Wire> wire, const InjectorProtoco
   if (!protocol_.balance.empty()) waiting_balance_ = model.balance;
   if (protocol_.stop.empty()) return;
   first_stop_ = protocol_.stop.front().send.fill(protocol_.balanceValues(model.balance)) + protocol_.framing.send_end;
+  wire_->setStopsApart(protocol_.stop_apart);
   wire_->setGuardedStop(first_stop_);  // a pulse must end with its node
 }
 
 SerialInjector::~SerialInjector() {
-  if (!first_stop_.empty() && mayFlow() && wire_->isOpen()) wire_->write(first_stop_, time_);
+  if (first_stop_.empty() || !mayFlow() || !wire_->isOpen()) return;
+  wire_->write(first_stop_, time_);
+  if (protocol_.stop_apart > 0) wire_->leaveToGuard();
 }
 
 const InjectorProtocol::Exchanges& SerialInjector::exchanges(Task task) const {
@@ -115,7 +118,8 @@ std::string SerialInjector::stop() {
 void SerialInjector::reset() {
   fault_.clear();
   tries_ = 0;
-  if (!balance_confirmed_ && !waiting_balance_ && !protocol_.balance.empty()) waiting_balance_ = sent_balance_;
+  const bool has_balance = protocol_.balance.empty() || balance_confirmed_ || task_ == Task::kBalance;
+  if (!has_balance && !waiting_balance_) waiting_balance_ = sent_balance_;
   model_.reset();
   volume_ = 0;
   if (unverified_) unverified_->volume = 0;
@@ -234,6 +238,7 @@ void SerialInjector::handleReply(const std::string& reply) {
     dialogue_.resynchronize(time_);
     return abort(wrong);
   }
+  unanswered_.reset();
   if (++step_ == exchanges(task_).size()) complete();
 }
 

@@ -91,6 +91,7 @@ class SerialInjector : public InjectorDevice {
   Task task_ = Task::kNone;          ///< the present command
   std::size_t step_ = 0;             ///< index of its present or next exchange
   InjectorProtocol::Values values_;  ///< values of its placeholders
+  std::size_t count_ = 0;            ///< of the last sent line, in kCounts
   bool waiting_begin_ = false;
   double last_query_ = -1e9;  ///< s, of the last query
   std::optional<InjectionPulse> waiting_pulse_;
@@ -110,6 +111,7 @@ class SerialInjector : public InjectorDevice {
   double ends_ = 0;                        ///< s, end of the present pulse
   double last_sent_ = 0;                   ///< s, of the last sent line
   double unconfirmed_until_ = -1e9;        ///< s, end of a pulse that may run without being accepted
+  std::optional<double> unanswered_;       ///< s, that it may last from the next line on, until one is answered
   bool balance_confirmed_ = false;         ///< the device has accepted the last one sent
   std::optional<double> waiting_balance_;  ///< Pa
   double sent_balance_ = 0;                ///< Pa

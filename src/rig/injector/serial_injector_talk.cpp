@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "rig/injector/protocol_placeholders.h"
 #include "rig/injector/serial_injector.h"
 
 namespace microinjection {
@@ -22,7 +23,8 @@ void SerialInjector::giveUpPulse(const std::string& reason, bool was_triggered, 
   }
   if (was_triggered && refusal == Refusal::kNo) {
     what += "; it may have been done, and is not sent again; the volume leaves it out";
-    unconfirmed_until_ = last_sent_ + protocol_.asSent(*sent_pulse_).duration + protocol_.framing.quiet;
+    unanswered_ = protocol_.asSent(*sent_pulse_).duration + protocol_.framing.quiet;
+    unconfirmed_until_ = last_sent_ + *unanswered_;
     pressureChanges();
   }
   sent_pulse_.reset();
@@ -70,7 +72,13 @@ void SerialInjector::abort(const std::string& reason, Refusal refusal) {
     stopped_ = false;
     unconfirmed_until_ = std::max(unconfirmed_until_, ends_);
     fail("stop: " + reason + "; the pulse may go on");
-  } else if (given_up == Task::kQuery && last) {
+  } else if (given_up == Task::kQuery) {
+    if (protocol_.query.front().confirm == kLine) {  // it may have been reset, and cannot tell
+      balance_confirmed_ = false;
+      if (!waiting_balance_) waiting_balance_ = sent_balance_;
+      pressureChanges();
+    }
+    if (!last) return;
     error_text_ = "query: " + reason;
     pressure_.reset();
   }
@@ -87,6 +95,8 @@ void SerialInjector::sendNext(double time) {
   if (task_ == Task::kNone && !next(time)) return;
   const InjectorProtocol::Exchange& exchange = exchanges(task_)[step_];
   last_sent_ = time;
+  values_[kCount] = count_ = count_ % (sizeof kCounts - 2) + 1;
+  if (unanswered_) unconfirmed_until_ = time + *unanswered_;  // if it waits for its end, this line has it
   dialogue_.send(exchange.send.fill(values_), exchange.timeout, time);
 }
 

@@ -111,14 +111,19 @@ SerialPort::~SerialPort() = default;
 /// heartbeat() tells when there is no guard.
 void SerialPort::setGuardedStop(const std::string& bytes) {
   guarded_stop_ = bytes;
-  if (line_ && !bytes.empty()) line_->stop_guard.begin(line_->port.native_handle(), bytes);
+  if (line_ && !bytes.empty()) line_->stop_guard.begin(line_->port.native_handle(), bytes, stops_apart_);
+}
+
+void SerialPort::leaveToGuard() {
+  if (line_) line_->stop_guard.leave();
+  line_.reset();
 }
 
 std::string SerialPort::open() {
   line_ = std::make_unique<Line>();
   std::string reason = line_->open(config_);
   if (reason.empty() && !guarded_stop_.empty()) {
-    reason = line_->stop_guard.begin(line_->port.native_handle(), guarded_stop_);
+    reason = line_->stop_guard.begin(line_->port.native_handle(), guarded_stop_, stops_apart_);
     if (!reason.empty()) reason = config_.path + ": no stop guard: " + reason;
   }
   if (!reason.empty()) line_.reset();

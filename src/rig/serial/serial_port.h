@@ -36,6 +36,8 @@ class SerialPort : public Wire {
   ~SerialPort() override;
 
   void setGuardedStop(const std::string& bytes) override;
+  void setStopsApart(double apart) override { stops_apart_ = apart; }
+  void leaveToGuard() override;
   GuardReport heartbeat() override;
   std::string open() override;  ///< discards bytes received before
   bool isOpen() const override;
@@ -48,6 +50,7 @@ class SerialPort : public Wire {
   struct Line;  // hides Asio's large headers
   SerialPortConfig config_;
   std::string guarded_stop_;
+  double stops_apart_ = 0;      // s
   std::unique_ptr<Line> line_;  // null: closed
 };
 

@@ -24,10 +24,11 @@ double seconds(std::chrono::steady_clock::duration duration) { return std::chron
 
 }  // namespace
 
-std::string StopGuard::begin(int line, const std::string& stop) {
+std::string StopGuard::begin(int line, const std::string& stop, double apart) {
   end();
   line_ = line;
   stop_ = stop;
+  apart_ = apart;
   intervention_.clear();
   return missing_ = start();
 }
@@ -41,7 +42,7 @@ std::string StopGuard::start() {
   const int driver = fcntl(ends[1], F_DUPFD_CLOEXEC, 3), line = fcntl(line_, F_DUPFD_CLOEXEC, 3);
   const CommandLine program = findCommandLine();
   process_ = driver < 0 || line < 0 ? -1 : fork();
-  if (process_ == 0) runStopGuard(line, driver, stop_.data(), stop_.size(), program);
+  if (process_ == 0) runStopGuard(line, driver, stop_.data(), stop_.size(), apart_, program);
   std::string reason = process_ < 0 ? std::strerror(errno) : "";
   for (const int each : {ends[1], driver, line}) {
     if (each >= 0) close(each);
@@ -111,6 +112,11 @@ void StopGuard::endProcess() {
   }
   if (socket_ >= 0) close(socket_);
   process_ = socket_ = -1;
+}
+
+void StopGuard::leave() {
+  if (socket_ >= 0) close(socket_);
+  process_ = socket_ = line_ = -1;
 }
 
 void StopGuard::end() {

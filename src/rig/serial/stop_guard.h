@@ -22,13 +22,16 @@ class StopGuard {
   StopGuard& operator=(const StopGuard&) = delete;
 
   /// `line`: non-blocking descriptor of the open line, which must outlive this object. Returns an
-  /// empty text, or the reason why there is no guard.
-  std::string begin(int line, const std::string& stop);
+  /// empty text, or the reason why there is no guard. `apart`: s between two stops, see
+  /// Wire::setStopsApart(); 0: 0.2 s, and one stop at the end.
+  std::string begin(int line, const std::string& stop, double apart = 0);
   /// Must be called in every step of the driver. Reports what occurred since the last call.
   Wire::GuardReport heartbeat();
   /// True if the next heartbeat() will report an intervention. Until then only a stop may be sent.
   bool intervened();
   void end();
+  /// Ends as a death of this program does.
+  void leave();
 
   pid_t process() const { return process_; }  ///< -1: none
 
@@ -43,6 +46,7 @@ class StopGuard {
 
   int line_ = -1;
   std::string stop_;
+  double apart_ = 0;  // s
   pid_t process_ = -1;
   std::vector<pid_t> lost_;  // killed guards that have not terminated yet
   int socket_ = -1;          // the system closes this end when the program terminates

@@ -66,7 +66,8 @@ double now() {
 
 class Guard {
  public:
-  Guard(const char* stop, std::size_t size) : stop_(stop), size_(size), written_(size), last_tick_(now()) {}
+  Guard(const char* stop, std::size_t size, double apart)
+      : stop_(stop), size_(size), apart_(apart), written_(size), last_tick_(now()) {}
 
   void guardUntilDriverTerminates() {
     while (process()) {
@@ -79,6 +80,11 @@ class Guard {
   void stopDevice() {
     if (written_ == size_) written_ = 0;  // a partly written stop is completed
     for (write(); written_ < size_; write()) wait(-1);
+  }
+  void stopDeviceAgain() {
+    if (apart_ == 0) return;
+    poll(nullptr, 0, static_cast<int>(1e3 * apart_));
+    stopDevice();
   }
 
  private:
@@ -103,11 +109,13 @@ class Guard {
     last_tick_ = time;
     silence_ = received_ ? 0 : silence_ + (passed < 2e-3 * kTick ? passed : 1e-3 * kTick);
     if (received_) {
+      again_ = false;
       reported_ = false;
       send(kStopGuardEcho);
     }
-    if (silence_ < kStopGuardSilence) return;
-    silence_ = 0;  // repeats the stop after the same time, since the line may lose a byte
+    if (silence_ < (again_ && apart_ > 0 ? apart_ : kStopGuardSilence)) return;
+    silence_ = 0;  // repeats the stop after the same time, or `apart`, since the line may lose a byte
+    again_ = true;
     stopping_ = true;
     if (written_ == size_) written_ = 0;
   }
@@ -142,10 +150,12 @@ class Guard {
   }
 
   const char* stop_;
-  std::size_t size_, written_;
+  std::size_t size_;
+  double apart_;  // s
+  std::size_t written_;
   double last_tick_;    // s
   double silence_ = 0;  // s, since the driver's last heartbeat
-  bool received_ = false, stopping_ = false, reported_ = false;
+  bool received_ = false, again_ = false, stopping_ = false, reported_ = false;
 };
 
 }  // namespace
@@ -162,7 +172,7 @@ CommandLine findCommandLine() {
   return {reinterpret_cast<char*>(begin), end - begin};
 }
 
-void runStopGuard(int line, int driver, const char* stop, std::size_t size, CommandLine program) {
+void runStopGuard(int line, int driver, const char* stop, std::size_t size, double apart, CommandLine program) {
   setsid();  // a signal to the program's group must not end the guard
   for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) signal(number, SIG_IGN);
   prctl(PR_SET_NAME, kName);  // nor must a kill by the program's name
@@ -176,9 +186,10 @@ void runStopGuard(int line, int driver, const char* stop, std::size_t size, Comm
   dup2(driver, kDriver);
   closeAllFrom(3);
   close(2);
-  Guard guard(stop, size);
+  Guard guard(stop, size, apart);
   guard.guardUntilDriverTerminates();
   guard.stopDevice();
+  guard.stopDeviceAgain();
   _exit(0);
 }
 

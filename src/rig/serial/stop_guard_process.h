@@ -24,12 +24,15 @@ CommandLine findCommandLine();
 /// socket `driver` has terminated, and repeatedly while the driver sends no heartbeat. `line` must
 /// be non-blocking; both descriptors must be > 2.
 ///
+/// `apart` (s), if it is not 0: between two stops, and a second one follows the driver's end.
+///
 /// It overwrites `program` with a name of its own, so that `pkill -f` with the driver's name does
 /// not kill it. It locks its memory if the limits allow it, so that it runs while the machine
 /// swaps.
 ///
 /// It runs in the child of a fork of a multi-threaded program, so it may only call
 /// async-signal-safe functions.
-[[noreturn]] void runStopGuard(int line, int driver, const char* stop, std::size_t size, CommandLine program);
+[[noreturn]] void runStopGuard(int line, int driver, const char* stop, std::size_t size, double apart,
+                               CommandLine program);
 
 }  // namespace microinjection

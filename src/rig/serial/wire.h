@@ -15,6 +15,12 @@ class Wire {
   /// Without bytes the line needs no guard; they are taken back on a closed line only.
   virtual void setGuardedStop(const std::string& /*bytes*/) {}
 
+  /// For a device that may not hear a stop in the middle of a command: s between two stops, of which
+  /// the guard then sends a second one also when this program dies.
+  virtual void setStopsApart(double /*apart*/) {}
+  /// Closes the line as a death of this program does: the guard sends its stops.
+  virtual void leaveToGuard() {}
+
   struct GuardReport {
     std::string intervention;  ///< why the device was or must be stopped since the last heartbeat; no reply is pending
     std::string missing;  ///< why there is no guard, so that nothing may move; empty: there is one, or none is needed

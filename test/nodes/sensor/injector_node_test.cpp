@@ -109,7 +109,8 @@ TEST_P(InjectorNodeTest, ItIsAsGoodAfterAReset) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Injectors, InjectorNodeTest,
-                         testing::Values("simulated", "emulated_femtojet", "emulated_relay", "emulated_voltage"),
+                         testing::Values("simulated", "emulated_arduino", "emulated_femtojet", "emulated_relay",
+                                         "emulated_voltage"),
                          [](const auto& info) { return info.param; });
 
 }  // namespace

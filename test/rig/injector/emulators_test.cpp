@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <sstream>
 
 #include "base/errors.h"
+#include "rig/injector/arduino_emulator.h"
 #include "rig/injector/femtojet_emulator.h"
 #include "rig/injector/output_module_emulator.h"
 
@@ -78,6 +80,51 @@ TEST(FemtojetEmulator, InjectsForItsTimeAndNotTwiceAtOnce) {
   EXPECT_EQ(talk(device, "C901\n", time), "ERR=012\r\n");
   EXPECT_NEAR(device.pressure(), 2500, 1e-9);
   EXPECT_THROW(device.inject({Fault::Kind::kError, 0, "12", 0}), ConfigError);
+}
+
+/// Its client sends "bc", a number from 0 to 255 and "C", or "x", and prints what comes.
+TEST(ArduinoEmulator, DoesWhatItsFirmwareDoes) {
+  ArduinoEmulator device;
+  const auto hears = [&](const std::string& command, double time) {
+    device.receive(command, time);
+    return device.send(time + 0.03 * double(command.size()) + 1e-3);
+  };
+  EXPECT_EQ(hears("bc100C", 1), "Arduino recieved: bc100C\r\n");
+  EXPECT_NEAR(device.pressure(), 20e3, 1e-9);
+  EXPECT_EQ(hears("bc255Cpressure!100!", 2), "Arduino recieved: bc255Cpressure!100!\r\n") << "Autoinjector 1.0's";
+  EXPECT_NEAR(device.pressure(), 51e3, 1e-9);
+  double time = 2;
+  for (const auto& [command, steps] : std::map<std::string, int>{{"bc256C", 0}, {"bc7C", 7}, {"bc7", 7}, {"bC9c", 0}}) {
+    hears(command, ++time);
+    EXPECT_NEAR(device.pressure(), 200 * steps, 1e-9) << command;
+  }
+  EXPECT_EQ(hears("bc0C", ++time), "Arduino recieved: bc0C\r\n");
+  EXPECT_EQ(hears("c100C", ++time), "Arduino recieved: c100C\r\n") << "repeated, and no command";
+  EXPECT_NEAR(device.pressure(), 0, 1e-9);
+}
+
+TEST(ArduinoEmulator, IsSlow) {
+  ArduinoEmulator device;
+  device.receive("bc100C", 1);
+  EXPECT_EQ(device.send(1.17), "");
+  device.receive("bc003C", 1.175);
+  EXPECT_EQ(device.send(1.35), "");
+  EXPECT_EQ(device.send(1.37), "Arduino recieved: bc100Cbc003C\r\n") << "what comes too early belongs to the first";
+  EXPECT_NEAR(device.pressure(), 20e3, 1e-9);
+  device.receive("bc003C", 1.4);
+  EXPECT_EQ(device.send(1.63), "") << "0.1 s after a command it listens again";
+  EXPECT_EQ(device.send(1.65), "Arduino recieved: bc003C\r\n");
+  device.receive("x", 2);
+  for (const auto& [time, pressure] :
+       std::map<double, double>{{2.1, 0}, {2.3, 100e3}, {2.7, 100e3}, {2.8, 0}, {3.2, 600}}) {
+    device.send(time);
+    EXPECT_NEAR(device.pressure(), pressure, 1e-9) << time;
+  }
+  device.inject({Fault::Kind::kInterrupt, 0, "", 4});
+  device.receive("bc100C", 4.1);
+  EXPECT_EQ(device.send(6), "") << "its boot loader does not hear";
+  EXPECT_NEAR(device.pressure(), 0, 1e-9);
+  EXPECT_THROW(device.inject({Fault::Kind::kError, 0, "1", 0}), ConfigError);
 }
 
 TEST(OutputModuleEmulator, RelaysAnswerAsTheManualsExamples) {

@@ -44,6 +44,32 @@ TEST(InjectorProtocol, ConfigurationIsStrict) {
   }
 }
 
+TEST(InjectorProtocol, ANumberThatTheDeviceWouldTakeForAnotherIsRefused) {
+  const InjectorProtocol protocol = testProtocol(
+      "{pressure_unit: 200, largest: 255, refuse: E, pulse_duration: 1, pulse: [{send: '{pressure}', expect: OK}],"
+      " balance: [{send: '{pressure}', expect: OK}]}");
+  EXPECT_EQ(protocol.balanceRefusal(51e3), "");
+  EXPECT_EQ(protocol.balanceRefusal(51.2e3), "balance pressure = 51200 Pa: 256 in the device's line, at most 255");
+  EXPECT_EQ(protocol.refusal({1, 51e3, 1}), "");
+  EXPECT_EQ(protocol.refusal({1, 51.2e3, 1}), "pulse pressure = 51200 Pa: 256 in the device's line, at most 255");
+}
+
+TEST(InjectorProtocol, AWholeLineIsConfirmedWithItsCount) {
+  const InjectorProtocol protocol = testProtocol(
+      "{refuse: E, pulse_pressure: 1, pulse_duration: 1, pulse: [{send: P, expect: OK}],"
+      " balance: [{send: 'B{pressure_Pa}{count}', expect: 'heard (.*)', confirm: line}]}");
+  InjectorProtocol::Values values = protocol.balanceValues(12);
+  const auto misread = [&](const std::string& reply) {
+    std::smatch groups;
+    EXPECT_TRUE(std::regex_match(reply, groups, protocol.balance[0].expect));
+    return InjectorProtocol::misread(protocol.balance[0], groups, values);
+  };
+  EXPECT_EQ(misread("heard B120"), "");
+  values["count"] = 10;
+  EXPECT_EQ(misread("heard B12A"), "");
+  EXPECT_EQ(misread("heard B120"), "it has understood B120 instead of B12A");
+}
+
 /// A parameter server turns both \r and \r\n into \n, so a file that has them means another thing than it says.
 TEST(InjectorProtocol, LineEndsAreNamesAndNoCharacters) {
   for (const auto& [text, message] : std::map<std::string, std::string>{

@@ -25,6 +25,27 @@ TEST_F(StoppedSerialInjectorTest, APulseEndsWithTheProgram) {
   }
 }
 
+TEST_F(StoppedSerialInjectorTest, AStopThatMayComeTooEarlyIsRepeatedByTheGuardBehindTheProgramsEnd) {
+  for (const bool pulse : {false, true}) {
+    WireScript line;
+    {
+      SerialInjector ends(
+          std::make_unique<ScriptedWire>(line),
+          testProtocol(std::string(kTestProtocol) + "stop: [{send: 'S{count}', expect: OK}]\nstop_apart: 1"), model);
+      for (int i = 0; i < 300; ++i) {
+        const std::size_t sent = line.sent.size();
+        if (i == 100 && pulse) ends.pulse({5, 10e3, 30});
+        ends.step(0.01 * i);
+        if (line.sent.size() > sent) line.incoming = line.sent.back()[0] == '?' ? "=10.0\r" : "OK\r";
+      }
+      ASSERT_EQ(ends.reading().busy, pulse);
+      EXPECT_EQ(line.guarded_stop, "S0\r");
+      EXPECT_EQ(line.stops_apart, 1);
+    }
+    EXPECT_EQ(line.left_to_guard, pulse);
+  }
+}
+
 TEST_F(StoppedSerialInjectorTest, ItsGuardSeesEveryStep) {
   for (int i = 0; i < 7; ++i) injector.step(0.01 * i);
   EXPECT_EQ(script.beats, 7);

@@ -113,6 +113,24 @@ TEST_F(UnknownDoseTest, APulseWithoutAReplyIsLeftOutOfTheVolume) {
   EXPECT_GT(injector.reading().volume, before) << "the balance pressure is there again";
 }
 
+/// A trigger whose end was lost is executed with the end of the next line.
+TEST_F(UnknownDoseTest, APulseWithoutAReplyMayBeginWithTheNextLine) {
+  run(1);
+  answers.erase("G");
+  injector.pulse({5, 12300, 0.2});
+  while (injector.fault().empty()) run(0.01);
+  injector.reset();
+  ASSERT_EQ(injector.fault(), "") << "by itself it would be over";
+  injector.setBalance(1200);
+  answers.erase("C");
+  for (long sent = count("C12.0"); count("C12.0") == sent;) run(0.01);
+  EXPECT_EQ(injector.fault(), "a pulse may be under way");
+  run(0.25);
+  EXPECT_EQ(injector.fault(), "a pulse may be under way");
+  run(0.1);
+  EXPECT_EQ(injector.fault(), "");
+}
+
 class VerifiedPulseTest : public DialogueTest {
  protected:
   VerifiedPulseTest()

@@ -14,6 +14,8 @@ struct WireScript {
   std::vector<std::string> sent;  ///< what it wrote
   std::string refusal;            ///< why the line does not open; empty: it does
   std::string guarded_stop;
+  double stops_apart = 0;  ///< s
+  bool left_to_guard = false;
   Wire::GuardReport guard;  ///< what the next beat reports
   int beats = 0;
   bool open = false;
@@ -24,6 +26,8 @@ class ScriptedWire : public Wire {
  public:
   explicit ScriptedWire(WireScript& script) : script_(script) {}
   void setGuardedStop(const std::string& bytes) override { script_.guarded_stop = bytes; }
+  void setStopsApart(double apart) override { script_.stops_apart = apart; }
+  void leaveToGuard() override { script_.left_to_guard = true; }
   GuardReport heartbeat() override {
     ++script_.beats;
     return {std::exchange(script_.guard.intervention, ""), script_.guard.missing};

@@ -16,6 +16,7 @@
 #include <iterator>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "rig/serial/hold_ups.h"
 #include "rig/serial/pseudo_terminal.h"
@@ -125,6 +126,36 @@ TEST_F(StopGuardTest, ACycleThatDoesNotStepIsStoppedAndLearnsWhy) {
   heard_.clear();
   ASSERT_TRUE(restUntil([&] { return hasStopped(); }));
   ASSERT_TRUE(stepUntil([&] { return !interventions_.empty(); }));
+}
+
+/// For a device that does not hear a stop behind another command, nor one behind a stop.
+TEST_F(StopGuardTest, StopsCanBeApartAndComeTwiceAtTheEnd) {
+  using Clock = std::chrono::steady_clock;
+  constexpr double kApart = 0.6;  // s
+  const auto stops = [&] {
+    std::size_t found = 0;
+    for (std::size_t at = 0; (at = heard_.find(kStop, at)) != std::string::npos; ++at) ++found;
+    return found;
+  };
+  // s, from before the first stop was sent to after the second one was heard: a machine that holds this up makes it
+  // more.
+  const auto expectTwoApart = [&] {
+    Clock::time_point earlier = Clock::now(), last = earlier;
+    EXPECT_TRUE(restUntil([&] {
+      if (stops() >= 1) return true;
+      earlier = std::exchange(last, Clock::now());
+      return false;
+    })) << heard_;
+    EXPECT_TRUE(restUntil([&] { return stops() >= 2; })) << heard_;
+    EXPECT_GT(std::chrono::duration<double>(Clock::now() - earlier).count(), kApart);
+  };
+  ASSERT_EQ(guard_.begin(line_, kStop, kApart), "");
+  step();
+  expectTwoApart();
+  step();
+  heard_.clear();
+  guard_.leave();
+  expectTwoApart();
 }
 
 TEST_F(StopGuardTest, AStopThatALineDoesNotTakeYetIsSentToItsEnd) {
