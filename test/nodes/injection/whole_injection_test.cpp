@@ -48,7 +48,9 @@ class WholeInjectionTest : public testing::TestWithParam<Devices> {
 };
 
 TEST_P(WholeInjectionTest, GoesThroughTheZonaInjectsAndComesOut) {
-  client_.send(punctureGoal());
+  auto goal = punctureGoal();
+  if (GetParam().injector == "emulated_arduino") goal.duration = 0.6;  // s, it takes 0.4 s to hear the end
+  client_.send(goal);
   const InjectResult done = result();
   EXPECT_EQ(client_.state(), GoalStatus::SUCCEEDED);
   EXPECT_EQ(done.outcome, "injected");
