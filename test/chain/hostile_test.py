@@ -184,7 +184,7 @@ class HostileTest(unittest.TestCase):
 class ChainTest(HostileTest):
     def test_chain(self):
         recorder = {"output_dir": f"{self.folder.name}/record", "hand": True, "injector": True, "bag": True}
-        self.begin({"session_recorder": recorder, "display": parameters("display"), "force_watchdog": {}})
+        self.begin({"session_recorder": recorder, "display": parameters("display", rate=5), "force_watchdog": {}})
         self.attack({topic: cls for topic, cls in self.topics().items() if topic != "/rosout"},
                     self.check_closes_again)
         force = self.chain.counts["/haptic/servo_cf"]

@@ -56,7 +56,7 @@ def chain_parameters():
         "injection_controller": parameters("injection_controller", rate=RATE, auto_enable=True, input_timeout=TIMEOUT),
         "micromanipulator": {**rig(), "rate": RATE, "command_timeout": TIMEOUT},
         "injector": parameters("injector"),
-        "cell_simulator": parameters("cell_simulator", rate=RATE, needle="true", needle_timeout=TIMEOUT, **cell),
+        "cell_simulator": parameters("cell_simulator", rate=RATE, state_rate=5, needle="true", needle_timeout=TIMEOUT, **cell),
         "force_sensor": parameters("force_sensor", rate=RATE, input_timeout=TIMEOUT)}
 
 

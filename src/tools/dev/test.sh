@@ -96,6 +96,8 @@ run_tests() {
   local kind=$1 build=$2 junit=$3 log="$RESULTS/$1.log" status=0
   shift 3
   say "test: $kind, ${*:-all folders of test/}"
+  local parallel
+  parallel=$(test_jobs)
   # Tests run side by side: with a BLAS thread for each core they would wait for each other's threads, up to twenty times
   # as long as they compute. ThreadSanitizer needs it, too: it sees races in libgomp, which is not instrumented.
   export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
@@ -107,7 +109,7 @@ run_tests() {
     "$ROOT/src/tools/stall_cores.py" &
     stalls=$!
   fi
-  (cd "$build" && ctest --parallel "$(test_jobs)" --output-on-failure --no-tests=error --timeout "${TEST_TIMEOUT:-900}" -R "$(name_pattern "$@")") || status=$?
+  (cd "$build" && ctest --parallel "$parallel" --output-on-failure --no-tests=error --timeout "${TEST_TIMEOUT:-900}" -R "$(name_pattern "$@")") || status=$?
   # Without real-time priority it has ended and said so: what passed then, passed without stalls.
   [[ -z $stalls ]] || kill "$stalls" 2>/dev/null || status=1
   cp "$build/Testing/Temporary/LastTest.log" "$log" || status=1
