@@ -122,7 +122,8 @@ def look(path, environment, name="inject"):
     """The console on the screen. @raises NotSeen"""
     try:
         subprocess.run(["import", "-silent", "-window", "root", "-quality", "10", f"png24:{path}"],  # packed little: quick
-                       env=environment, check=True, timeout=60, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                       env=environment, check=True, timeout=60, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                       stderr=subprocess.DEVNULL)
         pixels = pixels_of(path)
     except (subprocess.SubprocessError, OSError) as error:
         raise NotSeen(f"there is no picture: {error}") from error

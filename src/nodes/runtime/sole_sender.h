@@ -15,8 +15,8 @@ namespace microinjection {
 class SoleSender {
  public:
   static constexpr double kHandOver = 0.5;  ///< s without the other one, until a sender is the only one
-  /// Of a topic that has changes only, s from a sender's first message, while both are there. Not for ever, since a node
-  /// that was killed is there for ever.
+  /// Of a topic that has changes only, s from a sender's first message, while both are there. Not for ever, since a
+  /// node that was killed is there for ever.
   static constexpr double kHandOverOfChanges = 3;
 
   void receive(const std::string& sender, const ros::Time& now) {
@@ -44,7 +44,7 @@ class SoleSender {
   }
 
  private:
-  std::string sender_, other_;  ///< the last one, and the last one before it that is another
+  std::string sender_, other_;           ///< the last one, and the last one before it that is another
   ros::Time sent_, other_sent_, began_;  ///< `began_`: of the last one, since the other one's last message
 };
 
