@@ -149,6 +149,9 @@ void HapticBridgeNode::step(const Cycle::Tick& tick) {
   if (hand) hand_frame_ = hand->header.frame_id;
   // A stale device that publishes only changes may have missed the last one.
   if (!hand && operator_present_ && parameters_.timeouts.operator_present <= 0) operator_present_->invalidate();
+  // After two devices the operator presses anew, whichever is left.
+  if (operator_present_ && !(operator_present_->rivals(tick.now) + clutch_.rivals(tick.now)).empty())
+    operator_present_->invalidate();
   if (hand) input.hand = validPosition(hand, hand->header.frame_id, kLargestHandDistance);
   rig_->read(input, tick);
   input.hand_leaps = std::exchange(hand_leaps_, false);

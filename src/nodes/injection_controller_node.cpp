@@ -89,9 +89,10 @@ InjectionControllerNode::InjectionControllerNode(Bus& bus)
   using cell_microinjection::CellEstimate;
   estimates_ = subscribeGuarded<CellEstimate>(
       bus, "cell/estimate", 1, [this](const CellEstimate& message, const std::string&) { receiveEstimate(message); });
-  rig_setpoints_ = subscribeGuarded<geometry_msgs::PoseStamped>(
-      bus, "needle/setpoint_cp", 1, [this](const geometry_msgs::PoseStamped& message, const std::string&) {
+  rig_setpoints_ = subscribeMeasured<geometry_msgs::PoseStamped>(
+      bus, "needle/setpoint_cp", 1, [this, &bus](const geometry_msgs::PoseStamped& message, const std::string&) {
         rig_setpoint_ = validPosition(&message, kWorldFrame);
+        rig_setpoint_heard_ = bus.now();
       });
   cycle_.diagnostics().add("control", [this](auto& status) { report(status); });
   if (parameters_.auto_enable) execute("enable");
@@ -180,11 +181,15 @@ void InjectionControllerNode::watchNeedle(const geometry_msgs::PoseStamped& need
   const double dt = watched_.isZero() ? 0 : std::max(0.0, secondsBetween(watched_, now));
   watched_ = now;
   if (needle.header.stamp.isZero()) needle_poses_.reset();
-  const auto sent = commanded_ && rig_setpoint_ ? rig_setpoint_ : commanded_;
-  if (needle_poses_.changes(toVector(needle.pose.position))) setpoint_then_ = sent;
-  if (!sent) setpoint_then_.reset();
-  if (!setpoint_then_) setpoint_then_ = sent;
-  const bool is_sent = sent && (*sent - *setpoint_then_).norm() > kNeedleRests + needle_step_;
+  const bool rig_tells = rig_setpoint_ && !isDue(rig_setpoint_heard_, now, parameters_.input_timeout);
+  const auto sent = commanded_ && rig_tells ? rig_setpoint_ : commanded_;
+  // The set-point that belongs to a pose comes behind it.
+  if (needle_poses_.changes(toVector(needle.pose.position)) || !sent) {
+    setpoint_then_.reset();
+  } else if (!setpoint_then_) {
+    setpoint_then_ = sent;
+  }
+  const bool is_sent = sent && setpoint_then_ && (*sent - *setpoint_then_).norm() > kNeedleRests + needle_step_;
   if (is_sent) needle_poses_.expose(dt / needle_patience_);
   needle_.repeats = needle_poses_.repeats() ? "one pose, although it was sent elsewhere" : "";
 }

@@ -89,8 +89,9 @@ class InjectionControllerNode {
   std::optional<Eigen::Vector3d> setpoint_then_;  ///< m, when it changed; empty: the rig was not commanded
   std::optional<Eigen::Vector3d> commanded_;      ///< m, the last set-point; empty: the rig is not commanded
   std::optional<Eigen::Vector3d> rig_setpoint_;   ///< m, which the rig has accepted; empty: it does not tell
-  double needle_patience_ = 0.2;                  ///< s
-  double needle_step_ = 0;                        ///< m, the rig's resolution
+  ros::Time rig_setpoint_heard_;
+  double needle_patience_ = 0.2;  ///< s
+  double needle_step_ = 0;        ///< m, the rig's resolution
   RigWatch rig_;
   Witnesses witnesses_;
   LoopStatePublisher loop_state_;

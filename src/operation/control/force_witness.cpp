@@ -8,7 +8,7 @@ namespace microinjection {
 namespace {
 
 constexpr double kFallen = 0.9;  ///< of the largest force: a smaller one has fallen
-constexpr int kLaterFelt = 200;  ///< samples, by which one force may tell a puncture before the other one
+constexpr int kLaterFelt = 200;  ///< steps, by which one force may tell a puncture before the other one
 
 }  // namespace
 
@@ -44,7 +44,10 @@ void ForceWitness::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis,
   axis_ = axis;
   heard_ = force && force->allFinite();
   if (!heard_) return monitor_.skip();
-  if (!is_new) return monitor_.move(tip, axis);
+  if (!is_new) {
+    since_puncture_ += punctured_;
+    return monitor_.move(tip, axis);
+  }
   monitor_.step(tip, axis, *force);
   if (monitor_.confirmed() && !*monitor_.confirmed()) rearm();  // it was noise
   if (!monitor_.touched()) return;

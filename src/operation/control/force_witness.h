@@ -50,6 +50,7 @@ class ForceWitness {
   /// force that the controller acts on. Only before the first puncture: the membranes of a cell and of its model may
   /// fail one after the other.
   std::string disagreement(const NeedleMonitor& acting) const;
+  double depth() const { return monitor_.depth(); }  ///< m past the touch that it has felt; 0 before
   /// Why the sensor contradicts a puncture: its force has not fallen. Empty: it does not, or feels nothing.
   std::string deniesPuncture() const;
 
@@ -59,7 +60,7 @@ class ForceWitness {
   Eigen::Vector3d tip_ = Eigen::Vector3d::Zero(), axis_ = Eigen::Vector3d::UnitZ();  ///< m; of the last step
   bool heard_ = false;                                                               ///< in the last step
   bool punctured_ = false;     ///< a puncture was felt since the touch
-  int since_puncture_ = 0;     ///< samples
+  int since_puncture_ = 0;     ///< steps
   double largest_ = 0;         ///< N, of the smoothed force, since the touch
   double deep_ = 0;            ///< s for which the acting force has felt the touch more than `depth` ago
   std::optional<double> gap_;  ///< m, in an image since then

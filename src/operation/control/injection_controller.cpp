@@ -95,7 +95,7 @@ void InjectionController::engage(const Eigen::Vector3d& needle, const Eigen::Vec
 void InjectionController::refuseForce(Input& input) {
   const bool sensor = !config_.witness.measured;
   // A force that was felt well before the model's touch is of a cell that is not where its model is.
-  const bool comparable = monitor_.depth() <= config_.witness.depth;
+  const bool comparable = monitor_.depth() - witness_.depth() <= config_.witness.depth;
   const std::optional<Eigen::Vector3d> predicted = comparable ? input.witness : std::nullopt;
   sensor_fault_ =
       isValid(input.force) && sensor ? sensorFault(config_.guards, *input.force, input.axis, predicted) : "";

@@ -85,6 +85,7 @@ void NeedleMonitor::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis
 void NeedleMonitor::move(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis) {
   punctured_ = false;
   ++moves_;
+  if (puncture_) puncture_->wait();
   follow(tip, axis);
 }
 

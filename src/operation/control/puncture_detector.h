@@ -35,6 +35,8 @@ class PunctureDetector {
   /// Samples to detect the smallest fall that counts, from a force (N, above the offset), with one
   /// miss in 50.
   double latency(double force) const;
+  /// A step without a sample: the pause after a puncture is a time of the cell.
+  void wait() { paused_ -= paused_ > 0 ? 1 : 0; }
   double meanForce(int samples) const;  ///< N above the offset, of the last samples (at most 512) since it was reset
 
  private:

@@ -217,6 +217,7 @@ void SerialInjector::receive(double time) {
 
 void SerialInjector::handleReply(const std::string& reply) {
   if (task_ != Task::kBegin && std::regex_match(reply, protocol_.refuse)) {
+    unanswered_.reset();
     return abort("refused: " + reply, Refusal::kYes);
   }
   const InjectorProtocol::Exchange& exchange = exchanges(task_)[step_];

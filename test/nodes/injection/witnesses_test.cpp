@@ -70,6 +70,19 @@ TEST_F(WitnessesTest, ADeadSensorHoldsTheApproach) {
   expectHeldBeforeAPuncture(chain);
 }
 
+/// Each reading is one sample, although the controller reads it 40 times: its noise is no touch.
+TEST_F(WitnessesTest, ASensorThatStandsStillAgainAndAgainIsBelieved) {
+  InjectionChain chain({}, "tough_oocyte");
+  chain.session.executive().network().alter("/force_sensor/measured_cf", [count = 0](Passage passage) mutable {
+    return count++ % 40 == 0 ? std::vector<Passage>{passage} : std::vector<Passage>{};
+  });
+  chain.say("approach");
+  EXPECT_TRUE(
+      chain.session.until([&] { return chain.status().state == "contact" || !chain.status().reason.empty(); }, 30))
+      << chain.status();
+  EXPECT_EQ(chain.status().reason, "");
+}
+
 TEST_F(WitnessesTest, ASensorThatFreezesAtTheTouchHoldsTheNeedle) {
   InjectionChain chain({kMeasured}, "tough_oocyte");
   std::optional<geometry_msgs::Wrench> frozen;

@@ -113,7 +113,8 @@ TEST_F(ButtonsOnChangeTest, ButNotPastAPoseThatWasStale) {
   EXPECT_FALSE(bridge_.follows());
 }
 
-/// However long ago the other one has told a change, it may tell the next: neither counts while both are there.
+/// However long ago the other one has told a change, it may tell the next. Whichever is left, the operator presses
+/// anew.
 TEST_F(ButtonsOnChangeTest, OfTwoNodesAreNoButtonsAndBothAreNamed) {
   for (const auto& [topic, leads] : {std::pair(kClutch, 0), std::pair(kPresent, 1)}) {
     SCOPED_TRACE(topic);
@@ -131,9 +132,14 @@ TEST_F(ButtonsOnChangeTest, OfTwoNodesAreNoButtonsAndBothAreNamed) {
     const std::string said = bridge_.session().diagnostics().text("haptic_bridge: inputs");
     EXPECT_NE(said.find(std::string(topic) + " is sent by two nodes, /" + name + " and /world"), std::string::npos)
         << said;
+    bridge_.run(3);  // past the time of a successor
+    EXPECT_FALSE(bridge_.follows());
     bridge_.session().executive().kill(name);
     bridge_.run(1);
-    EXPECT_TRUE(bridge_.follows()) << "what its own device has told last";
+    EXPECT_FALSE(bridge_.follows());
+    world().sayNow(kPresent, joyMessage({1}));
+    bridge_.run(0.2);
+    EXPECT_TRUE(bridge_.follows());
   }
 }
 

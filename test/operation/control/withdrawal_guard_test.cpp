@@ -167,6 +167,22 @@ TEST_F(WithdrawalGuardTest, AForceThatIsFeltLongBeforeTheModelsTouchIsNoFaultOfT
   EXPECT_TRUE(saysOf("only be withdrawn")) << controller_.holdReason();
 }
 
+TEST_F(WithdrawalGuardTest, DeepInTheCellToo) {
+  enable();
+  std::normal_distribution<double> noise(0, 10e-9);  // N
+  const double limit = config_.guards.force_limit, way = config_.witness.depth + 5e-6, steps = 300;
+  input_.witness = Eigen::Vector3d::Zero();
+  for (int i = 0; i < config_.detection.noise_samples + 50; ++i) step(noise(random_));
+  for (int i = 0; i < steps; ++i) {
+    press(way / steps);
+    input_.witness = 0.9e-3 * limit * i / steps * 20 * kAxis;
+    step(0.9 * limit * i / steps + noise(random_));
+  }
+  input_.witness = 1.1 * limit / 1000 * kAxis;
+  step(1.1 * limit);
+  EXPECT_TRUE(saysOf("1000 times the predicted")) << controller_.holdReason();
+}
+
 TEST_F(WithdrawalGuardTest, AForceThatCannotBeStopsAnInjection) {
   config_.mode = "automatic";
   enable();
