@@ -96,7 +96,7 @@ class PackedImageSubscription : public RawSubscription {
               if (publishers() > 1) {
                 return refusals.add(topic, "it is published by " + std::to_string(publishers()) +
                                                " nodes: none counts until one of them is left (rostopic info " + topic +
-                                               ")");
+                                               "; rosnode cleanup, if one was killed)");
               }
               handler({image, "", ros::Time::now(), false, nullptr});
             })) {}

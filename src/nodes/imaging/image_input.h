@@ -19,7 +19,7 @@ std::string topicDefect(const std::string& topic);
 void acceptImageTransport(ConfigReader& reader);
 
 /// Receives a camera's images and reports the exceptions of `handler`. Their stamps are not checked. While two nodes
-/// send, no image counts, and both are named.
+/// send, no image counts, and both are named (of a packed transport, how many they are).
 /// @throws ConfigError topicDefect()
 Subscription subscribeImages(Bus& bus, const std::string& topic, std::uint32_t queue,
                              const std::function<void(const sensor_msgs::Image&)>& handler);

@@ -70,17 +70,23 @@ TEST_F(WitnessesTest, ADeadSensorHoldsTheApproach) {
   expectHeldBeforeAPuncture(chain);
 }
 
-/// Each reading is one sample, although the controller reads it 40 times: its noise is no touch.
+/// Each reading is one sample, although the controller reads it ten times: its noise is no touch.
 TEST_F(WitnessesTest, ASensorThatStandsStillAgainAndAgainIsBelieved) {
-  InjectionChain chain({}, "tough_oocyte");
-  chain.session.executive().network().alter("/force_sensor/measured_cf", [count = 0](Passage passage) mutable {
-    return count++ % 40 == 0 ? std::vector<Passage>{passage} : std::vector<Passage>{};
+  InjectionChain chain({kMeasured}, "tough_oocyte");
+  chain.session.executive().network().alter("/force_sensor/measured_cf", [this, count = 0](Passage passage) mutable {
+    if (count++ % 10 != 0) return std::vector<Passage>{};
+    auto noisy = boost::make_shared<Wrench>(*boost::static_pointer_cast<const Wrench>(passage.message));
+    noisy->wrench.force.z += 3 * noise();
+    passage.message = noisy;
+    return std::vector<Passage>{passage};
   });
+  chain.say("enable");  // the noise is measured anew
   chain.say("approach");
   EXPECT_TRUE(
       chain.session.until([&] { return chain.status().state == "contact" || !chain.status().reason.empty(); }, 30))
       << chain.status();
   EXPECT_EQ(chain.status().reason, "");
+  EXPECT_TRUE(chain.cell().in_contact) << chain.needle().transpose();
 }
 
 TEST_F(WitnessesTest, ASensorThatFreezesAtTheTouchHoldsTheNeedle) {
