@@ -68,6 +68,7 @@ class Session:
         self.seen, self._has_moved = {}, False
         self._subscribers = [rospy.Subscriber(topic, kind, self._receive, topic)
                              for topic, kind in (("/controller/injection_state", InjectionStatus),
+                                                 ("/controller/operating_state", OperatingState),
                                                  ("/needle/operating_state", OperatingState),
                                                  ("/needle/measured_cp", PoseStamped))]
         self.nodes = KillableNodes({
@@ -77,6 +78,7 @@ class Session:
             "cell_simulator": parameters("cell_simulator", needle_timeout=1.0, **CELL)})
         self._move = rospy.Publisher("/needle/move_cp", PoseStamped, queue_size=1)
         self.commands = rospy.Publisher("/controller/state_command", StringStamped, queue_size=1)
+        self._rig_commands = rospy.Publisher("/needle/state_command", StringStamped, queue_size=1)
         self.process = self.nodes.process("micromanipulator")
 
     def _receive(self, message, topic):
@@ -108,6 +110,15 @@ class Session:
         status = self.seen.get("/controller/injection_state")
         return status.state if status else ""
 
+    def goes_on(self):
+        """A machine that stands still for longer than an answer may take has its rig stopped and the injection paused. An
+        operator then lets them go on."""
+        controller = self.seen.get("/controller/operating_state")
+        if controller and controller.state == "PAUSED":
+            self._rig_commands.publish(StringStamped(string="enable"))
+            self.commands.publish(StringStamped(string="resume"))
+        return True
+
     def restart(self):
         """The driver, which is dead."""
         self.process.wait()
@@ -119,7 +130,7 @@ class Session:
         self.process.send_signal(signal.SIGCONT)
         self.nodes.stop()
         self.nodes.forget()
-        for end in (*self._subscribers, self._move, self.commands):
+        for end in (*self._subscribers, self._move, self.commands, self._rig_commands):
             end.unregister()
 
 
@@ -159,9 +170,10 @@ class FreezeRigTest(unittest.TestCase):
         cls.master.kill()
 
     def indents(self, session, emulator):
-        until(lambda: session.state() == "indent", "a needle that indents")
+        until(lambda: session.goes_on() and session.state() == "indent", "a needle that indents")
         begun = emulator.place()[1]
-        until(lambda: np.abs(emulator.place()[1] - begun).max() > 0.5e-6, "a needle that moves in the cell")
+        until(lambda: session.goes_on() and np.abs(emulator.place()[1] - begun).max() > 0.5e-6,
+              "a needle that moves in the cell")
 
     def check_stops(self, session, emulator, fault):
         stalls, place, same = Stalls(), emulator.place(), 0
