@@ -7,19 +7,24 @@ namespace {
 
 TEST_F(StoppedSerialInjectorTest, AKilledNodesPulseIsStopped) { EXPECT_EQ(script.guarded_stop, "S\r"); }
 
+/// The device answers each line; `pulse`: 30 s begin after 1 s.
+bool isBusyAfterThreeSeconds(SerialInjector& injector, WireScript& line, bool pulse) {
+  for (int i = 0; i < 300; ++i) {
+    const std::size_t sent = line.sent.size();
+    if (i == 100 && pulse) injector.pulse({5, 10e3, 30});
+    injector.step(0.01 * i);
+    if (line.sent.size() > sent) line.incoming = line.sent.back()[0] == '?' ? "=10.0\r" : "OK\r";
+  }
+  return injector.reading().busy;
+}
+
 TEST_F(StoppedSerialInjectorTest, APulseEndsWithTheProgram) {
   for (const bool pulse : {false, true}) {
     WireScript line;
     {
       SerialInjector ends(std::make_unique<ScriptedWire>(line), testProtocol(std::string(kTestProtocol) + kStop),
                           model);
-      for (int i = 0; i < 300; ++i) {
-        const std::size_t sent = line.sent.size();
-        if (i == 100 && pulse) ends.pulse({5, 10e3, 30});
-        ends.step(0.01 * i);
-        if (line.sent.size() > sent) line.incoming = line.sent.back()[0] == '?' ? "=10.0\r" : "OK\r";
-      }
-      ASSERT_EQ(ends.reading().busy, pulse);
+      ASSERT_EQ(isBusyAfterThreeSeconds(ends, line, pulse), pulse);
     }
     EXPECT_EQ(line.sent.back() == "S\r", pulse);
   }
@@ -32,13 +37,7 @@ TEST_F(StoppedSerialInjectorTest, AStopThatMayComeTooEarlyIsRepeatedByTheGuardBe
       SerialInjector ends(
           std::make_unique<ScriptedWire>(line),
           testProtocol(std::string(kTestProtocol) + "stop: [{send: 'S{count}', expect: OK}]\nstop_apart: 1"), model);
-      for (int i = 0; i < 300; ++i) {
-        const std::size_t sent = line.sent.size();
-        if (i == 100 && pulse) ends.pulse({5, 10e3, 30});
-        ends.step(0.01 * i);
-        if (line.sent.size() > sent) line.incoming = line.sent.back()[0] == '?' ? "=10.0\r" : "OK\r";
-      }
-      ASSERT_EQ(ends.reading().busy, pulse);
+      ASSERT_EQ(isBusyAfterThreeSeconds(ends, line, pulse), pulse);
       EXPECT_EQ(line.guarded_stop, "S0\r");
       EXPECT_EQ(line.stops_apart, 1);
     }
