@@ -41,13 +41,22 @@ void settle(std::vector<std::complex<float>>& row, std::size_t length) {
   row.resize(length, {0.5F, 0});
 }
 
+std::vector<std::vector<std::complex<float>>> makeTable() {
+  std::vector<std::vector<std::complex<float>>> rows;
+  for (int i = 0; i < kRows; ++i) rows.push_back(rowOf(kLargestArgument * i / (kRows - 1)));
+  const std::size_t length = rows.back().size() + 1;
+  for (auto& row : rows) settle(row, length);
+  return rows;
+}
+
+const std::vector<std::vector<std::complex<float>>>& table() {
+  static const std::vector<std::vector<std::complex<float>>> rows = makeTable();
+  return rows;
+}
+
 }  // namespace
 
-EdgeResponse::EdgeResponse() {
-  for (int i = 0; i < kRows; ++i) rows_.push_back(rowOf(kLargestArgument * i / (kRows - 1)));
-  const std::size_t length = rows_.back().size() + 1;
-  for (auto& row : rows_) settle(row, length);
-}
+EdgeResponse::EdgeResponse() : rows_(table()) {}
 
 EdgeResponse::Depth EdgeResponse::depth(double blur, double diffraction) const {
   blur = std::max(blur, std::abs(diffraction) / std::tan(kLargestArgument));

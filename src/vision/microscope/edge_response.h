@@ -52,12 +52,12 @@ class EdgeResponse {
   EdgeResponse();
 
   /// `blur`: real part of the variance, above 0; `diffraction`: imaginary part. A ratio of more than
-  /// about 10, which only a nearly coherent source has, is cut there by raising the blur. The result
-  /// refers to this object.
+  /// about 10, which only a nearly coherent source has, is cut there by raising the blur.
   Depth depth(double blur, double diffraction) const;
 
  private:
-  std::vector<std::vector<Value>> rows_;  ///< response less 1/2 over |u| / sqrt|variance|, a row an argument
+  /// Response less 1/2 over |u| / sqrt|variance|, a row an argument; the table of all objects.
+  const std::vector<std::vector<Value>>& rows_;
 };
 
 }  // namespace microinjection

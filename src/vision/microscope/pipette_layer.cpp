@@ -5,6 +5,8 @@
 #include <limits>
 #include <optional>
 
+#include "vision/microscope/tube_shape.h"
+
 namespace microinjection {
 namespace {
 
@@ -14,36 +16,19 @@ constexpr double kFading = 0.25;           // of the wall's thickness
 constexpr float kMiddle = 0.45F;           // darkness of the wall's middle over that of its outside
 constexpr double kCoreWidth = 0.5;         // rms half width over the half width of the core
 constexpr double kHoldingRim = 1.5e-6;     // m
-constexpr double kLeastGrowth = 1e-3;      // px
 constexpr float kSteepest = 0.97F;         // sine of the largest angle of a round lip,
 constexpr float kSteepestCosine = 0.24F;   // and at most its cosine
 constexpr float kRim = 0.5F;               // darkness of the end face's rim over that of the wall
 
 using Value = EdgeResponse::Value;
 
-/// A pipette in the image; lengths in px, `s` along the axis from the end face towards the shaft.
-struct Tube {
-  Eigen::Vector2f end, axis;
-  double radius;         ///< at the end
-  double growth;         ///< of the radius per px
-  double largest;        ///< radius where the growth ends
-  double inner;          ///< inner over outer radius
-  double lip;            ///< px, radius to which the end of the wall is rounded; 0: cut straight
-  double rim;            ///< px, width of the end face's rim along the axis
-  double defocus;        ///< m, at the end
-  double defocus_slope;  ///< m per px
+/// A pipette in the image; lengths in px.
+struct Tube : TubeShape {
+  using TubeShape::TubeShape;
+  double rim = 0;            ///< px, width of the end face's rim along the axis
+  double defocus = 0;        ///< m, at the end
+  double defocus_slope = 0;  ///< m per px
   PipetteOptics optics;
-
-  /// Straight near the end, and bending to its largest value.
-  double radiusAt(double s) const { return growth == 0 ? radius : radius + bent(s) * s * growth; }
-  double slopeAt(double s) const { return growth == 0 ? 0 : std::pow(bent(s), 5) * growth; }
-
- private:
-  /// Share of the straight growth that is left at `s`.
-  double bent(double s) const {
-    const double straight = growth * std::max(0.0, s) / std::max(largest - radius, kLeastGrowth);
-    return std::pow(1 + std::pow(straight, 4), -0.25);
-  }
 };
 
 /// What holds at one place of the axis.
@@ -263,35 +248,19 @@ class TubePicture {
 
 void addPipette(const HoldingPipette& pipette, double focus, const CameraView& view, const Optics& optics,
                 OpticalImage& image) {
-  Tube tube;
-  tube.end = view.pixelOf(pipette.mouth).cast<float>();
-  tube.axis = view.imageDirection(pipette.axis).cast<float>();
-  tube.radius = pipette.outer_radius / view.pixel_size;
-  tube.growth = pipette.taper;
-  tube.largest = 3 * tube.radius;
-  tube.inner = pipette.inner_radius / pipette.outer_radius;
-  tube.lip = (pipette.outer_radius - pipette.inner_radius) / 2 / view.pixel_size;
+  Tube tube(pipette, view);
   tube.rim = std::min(kHoldingRim, pipette.outer_radius - pipette.inner_radius) / view.pixel_size;
   tube.defocus = pipette.y - focus;
-  tube.defocus_slope = 0;
   tube.optics = pipette.optics;
   TubePicture(tube, optics, image).add();
 }
 
 void addPipette(const InjectionPipette& pipette, double focus, const CameraView& view, const Optics& optics,
                 OpticalImage& image) {
-  const Eigen::Vector2d in_image(pipette.axis.x(), pipette.axis.z());
-  Tube tube;
-  tube.end = view.pixelOf({pipette.tip.x(), pipette.tip.z()}).cast<float>();
-  tube.axis = view.imageDirection(in_image).cast<float>();
-  tube.radius = pipette.tip_radius / view.pixel_size;
-  tube.growth = pipette.taper / in_image.norm();
-  tube.largest = pipette.shaft_radius / view.pixel_size;
-  tube.inner = 1 - pipette.wall;
-  tube.lip = 0;
+  Tube tube(pipette, view);
   tube.rim = pipette.wall * pipette.tip_radius / view.pixel_size;
   tube.defocus = pipette.tip.y() - focus;
-  tube.defocus_slope = pipette.axis.y() / in_image.norm() * view.pixel_size;
+  tube.defocus_slope = pipette.axis.y() / std::hypot(pipette.axis.x(), pipette.axis.z()) * view.pixel_size;
   tube.optics = pipette.optics;
   TubePicture(tube, optics, image).add();
 }

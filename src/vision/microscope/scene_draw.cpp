@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "base/config_errors.h"
 
@@ -10,22 +9,6 @@ namespace microinjection {
 namespace {
 
 constexpr int kCorners = 720;
-
-/// Unlike the standard distributions, it gives the same values with every standard library.
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : random_(seed) {}
-  double within(double low, double high) {
-    return low + (high - low) * static_cast<double>(random_() >> 11) * 0x1.0p-53;
-  }
-  double within(const DrawInterval& interval) { return within(interval.low, interval.high); }
-  bool chance(double probability) { return within(0, 1) < probability; }
-  int upTo(int most) { return static_cast<int>(within(0, most + 1.0)); }
-  std::uint64_t bits() { return random_(); }
-
- private:
-  std::mt19937_64 random_;
-};
 
 Eigen::Vector2d unit(double angle) { return {std::cos(angle), std::sin(angle)}; }
 
@@ -231,7 +214,7 @@ class SceneMaker {
 
   const SceneDrawConfig& config_;
   const CameraView& view_;
-  Random random_;
+  RandomDraw random_;
   DrawnScene drawn_;
   Eigen::Vector2d centre_{0, 0};
   bool has_cell_ = false;

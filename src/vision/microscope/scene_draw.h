@@ -7,13 +7,9 @@
 #include "base/range.h"
 #include "vision/camera/camera_view.h"
 #include "vision/microscope/microscope_scene.h"
+#include "vision/microscope/random_draw.h"
 
 namespace microinjection {
-
-/// An interval to draw from, both ends included.
-struct DrawInterval {
-  double low, high;
-};
 
 /// What a drawn scene contains; probabilities are in [0, 1].
 struct SceneDrawConfig {

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <opencv2/dnn/dnn.hpp>
+#include <string>
+
+#include "vision/detection/frame.h"
+#include "vision/segmentation/segmentation.h"
+
+namespace microinjection {
+
+/// The learned eye: a small network that tells for each part of a frame what it shows.
+///
+/// It has learnt from the virtual microscope's images (doc/design/segmentation.md) and proposes where things are; it
+/// does not measure. It takes frames of any size and brightness, since a WorkingImage of them is what it sees.
+///
+/// Not for several threads at once.
+class Segmenter {
+ public:
+  /// Reads the weights, an ONNX file, and their description, the file of the same name that ends in .yaml. Throws
+  /// ConfigError where one is missing, damaged, or does not belong to the other or to this program.
+  explicit Segmenter(const std::string& weights);
+
+  /// About 10 ms of one core. The frame must not have a refusal.
+  Segmentation segment(const Frame& frame);
+
+ private:
+  cv::dnn::Net network_;
+};
+
+}  // namespace microinjection
