@@ -1,9 +1,15 @@
 # shellcheck shell=bash
-# ./dev setup: the packages of dependencies.txt that this machine lacks; --peers, --cluster: those of benchmark/peers
-# or src/workflow, too.
+# ./dev setup: the packages of dependencies.txt that this machine lacks; --peers, --cluster, --training: those of
+# benchmark/peers, src/workflow or src/vision/segmentation_training, too.
 
-command_setup() {
-  [[ $* == "" || $* == --peers || $* == --cluster ]] || misuse "setup takes nothing, --peers or --cluster, not '$*'"
+command_setup_training() {
+  [[ $(package_column) == 1 ]] || fail "./dev train needs PyTorch 1.13 as Debian 12 has it: take it from its makers"
+  install_list "$TRAINING/dependencies.txt" 1
+}
+
+setup() {
+  [[ $* == "" || $* == --peers || $* == --cluster || $* == --training ]] ||
+    misuse "setup takes nothing, --peers, --cluster or --training, not '$*'"
   setup
   case $* in
     --peers)
@@ -15,6 +21,7 @@ command_setup() {
       [[ $(package_column) == 1 ]] || fail "the profiles in config/workflow need Snakemake 7.8 or later: take it from its makers"
       install_list src/workflow/dependencies.txt 1
       ;;
+    --training) setup_training ;;
   esac
 }
 

@@ -260,7 +260,7 @@ void addPipette(const InjectionPipette& pipette, double focus, const CameraView&
   Tube tube(pipette, view);
   tube.rim = pipette.wall * pipette.tip_radius / view.pixel_size;
   tube.defocus = pipette.tip.y() - focus;
-  tube.defocus_slope = pipette.axis.y() / std::hypot(pipette.axis.x(), pipette.axis.z()) * view.pixel_size;
+  tube.defocus_slope = pipette.axis.y() / Eigen::Vector2d(pipette.axis.x(), pipette.axis.z()).norm() * view.pixel_size;
   tube.optics = pipette.optics;
   TubePicture(tube, optics, image).add();
 }
