@@ -6,9 +6,12 @@ turn at random. Writes segmentation.onnx, and segmentation.yaml beside it: the c
 where they come from. Stops early with what it has learnt at an interrupt (Ctrl-C) or after --minutes.
 """
 import argparse
+import itertools
 import math
+import queue
 import subprocess
 import sys
+import threading
 import time
 import zlib
 from pathlib import Path
@@ -121,33 +124,71 @@ def coarser(images, labels, random):
     return mean, labels[:, random.integers(2)::2, random.integers(2)::2]
 
 
+class Stream:
+    """Images of a range of seeds, rendered and read while others are learnt from."""
+
+    BLOCK = 16  # images
+
+    def __init__(self, layout, first, count):
+        self.layout = layout
+        self.process = subprocess.Popen([layout.program, str(first), str(count)], stdout=subprocess.PIPE)
+        self.blocks = queue.Queue(8)
+        self.stopped = False
+        self.thread = threading.Thread(target=self.read, daemon=True)
+        self.thread.start()
+
+    def read(self):
+        while not self.stopped:
+            block = self.layout.read(self.process.stdout, self.BLOCK)
+            self.blocks.put(block)
+            if len(block[0]) < self.BLOCK:
+                break
+
+    def __iter__(self):
+        while True:
+            images, labels = self.blocks.get()
+            yield from zip(images, labels)
+            if len(images) < self.BLOCK:
+                return
+
+    def close(self):
+        self.stopped = True
+        self.process.terminate()
+        while self.thread.is_alive():
+            try:
+                self.blocks.get(timeout=0.1)
+            except queue.Empty:
+                pass
+        self.process.wait()
+
+
 class Pool:
     """Images to learn from: each is shown `repeats` times on average, and replaced by the next."""
 
     def __init__(self, layout, first, count, size, repeats, random):
-        self.layout, self.repeats, self.random = layout, repeats, random
-        self.process = subprocess.Popen([layout.program, str(first), str(count)], stdout=subprocess.PIPE)
-        self.images, self.labels = (array.copy() for array in layout.read(self.process.stdout, min(size, count)))
+        self.repeats, self.random = repeats, random
+        self.stream = Stream(layout, first, count)
+        self.fresh = iter(self.stream)
+        pairs = list(itertools.islice(self.fresh, min(size, count)))
+        self.images, self.labels = (np.stack(arrays) for arrays in zip(*pairs))
         self.debt = 0.0
 
     def batch(self, count):
         """Returns images and labels, or none when all seeds have been used up."""
         self.debt += count / self.repeats
-        fresh = int(self.debt)
-        self.debt -= fresh
-        if fresh:
-            images, labels = self.layout.read(self.process.stdout, fresh)
-            if len(images) < fresh:
+        while self.debt >= 1:
+            pair = next(self.fresh, None)
+            if pair is None:
                 return None
-            places = self.random.choice(len(self.images), fresh, replace=False)
-            self.images[places], self.labels[places] = images, labels
+            place = self.random.integers(len(self.images))
+            self.images[place], self.labels[place] = pair
+            self.debt -= 1
         chosen = self.random.choice(len(self.images), count, replace=False)
         pairs = [turned(self.images[i], self.labels[i], self.random) for i in chosen]
         return np.stack([pair[0] for pair in pairs]), np.stack([pair[1] for pair in pairs])
 
     def close(self):
-        self.process.stdout.close()
-        self.process.wait()
+        self.stream.close()
 
 
 def confusion(network, layout, images, labels):

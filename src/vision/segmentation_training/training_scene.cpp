@@ -140,7 +140,34 @@ class TrainingSceneMaker {
     has_zona_ ? addLayers(cell, centre) : addBareBorder(cell, centre);
     addNucleus(cell, centre);
     centres_.push_back(centre);
+    const bool embryo = has_zona_ && random_.chance(0.12);
+    const CellOutline ooplasm = cell.ooplasm;
+    if (embryo) {
+      cell.ooplasm.clear();
+      cell.nucleus.reset();
+    }
     made_.scene.cells.push_back(cell);
+    if (embryo) addBlastomeres(cell, ooplasm, centre);
+  }
+
+  /// Cells of an embryo in place of the ooplasm; they overlap as seen from above.
+  void addBlastomeres(const CellScene& embryo, const CellOutline& ooplasm, const Eigen::Vector2d& centre) {
+    double room = radius_;
+    for (const Eigen::Vector2d& corner : ooplasm) room = std::min(room, (corner - centre).norm());
+    const int count = 2 + random_.upTo(6);
+    const double size = room * (count == 2 ? 0.55 : count < 5 ? 0.48 : 0.38), begin = random_.within(-M_PI, M_PI);
+    for (int i = 0; i < count; ++i) {
+      const double angle = begin + 2 * M_PI * i / count + random_.within(-0.3, 0.3);
+      const bool middle = count > 5 && i % 3 == 0;
+      const double away = (room - size) * (middle ? random_.within(0, 0.5) : random_.within(0.85, 1));
+      CellScene cell;
+      cell.cytoplasm = embryo.cytoplasm;
+      cell.material = centre + away * direction(angle);
+      cell.texture_seed = random_.bits() % 4096;
+      cell.y = embryo.y + random_.within(-4e-6, 4e-6);
+      cell.ooplasm = Blob(random_, 0.06, 0.01).outline(cell.material, size * random_.within(0.85, 1.1));
+      made_.scene.cells.push_back(cell);
+    }
   }
 
   void addLayers(CellScene& cell, const Eigen::Vector2d& centre) {
