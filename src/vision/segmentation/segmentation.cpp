@@ -124,6 +124,40 @@ ClassRegion Segmentation::regionOf(const cv::Mat& component, const cv::Mat& prob
   return region;
 }
 
+std::optional<cv::Point2d> Segmentation::endOf(const ClassRegion& region) const {
+  constexpr double kEnd = 1;      // output px along the axis whose middle is taken
+  constexpr int kDirections = 3;  // improvements of the axis
+  std::vector<cv::Point> pixels;
+  cv::findNonZero(region.mask, pixels);
+  cv::Point2d entry(0, 0), end(0, 0);
+  int entering = 0;
+  for (const cv::Point& pixel : pixels) {
+    end += cv::Point2d(pixel);
+    if (pixel.x > inside_.x && pixel.y > inside_.y && pixel.x < inside_.br().x - 1 && pixel.y < inside_.br().y - 1)
+      continue;
+    entry += cv::Point2d(pixel);
+    ++entering;
+  }
+  if (entering == 0) return std::nullopt;
+  entry /= entering;
+  end /= static_cast<double>(pixels.size());
+  for (int i = 0; i < kDirections; ++i) {
+    const cv::Point2d axis = end - entry;
+    double farthest = 0;
+    for (const cv::Point& pixel : pixels) farthest = std::max(farthest, (cv::Point2d(pixel) - entry).dot(axis));
+    const double least = farthest - kEnd * cv::norm(axis);
+    cv::Point2d sum(0, 0);
+    int count = 0;
+    for (const cv::Point& pixel : pixels) {
+      if ((cv::Point2d(pixel) - entry).dot(axis) < least) continue;
+      sum += cv::Point2d(pixel);
+      ++count;
+    }
+    end = sum / count;
+  }
+  return toFrame(end);
+}
+
 // An output pixel lies in the middle of 2 x 2 pixels of the working image.
 cv::Point2d Segmentation::toFrame(const cv::Point2d& output) const {
   return working_.toImage(2 * output + cv::Point2d(0.5, 0.5));

@@ -51,6 +51,10 @@ class Segmentation {
   /// The largest of them.
   std::optional<ClassRegion> largestRegion(std::initializer_list<PixelClass> classes) const;
 
+  /// Of a region that enters through the frame's border, as that of a pipette does: the middle of its end in the frame,
+  /// px. None for a region that does not touch the border.
+  std::optional<cv::Point2d> endOf(const ClassRegion& region) const;
+
   /// px of the frame in a row of one output pixel.
   double framePixels() const { return 2 / working_.scale; }
   /// px of the frame at px of the output, and back.

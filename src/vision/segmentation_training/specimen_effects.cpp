@@ -180,7 +180,7 @@ void addSpecimenEffects(RandomDraw& random, cv::Mat& light, cv::Mat& label) {
   addBands(random, label, light);
   if (random.chance(0.12)) addLines(random, light);
   addUnevenLight(random, light);
-  if (random.chance(0.2)) addWell(random, light, label);
+  if (random.chance(0.28)) addWell(random, light, label);
   if (random.chance(0.08)) addFieldStop(random, light, label);
 }
 

@@ -53,8 +53,8 @@ class TrainingSceneMaker {
     drawCamera();
     drawLook();
     const double kind = random_.within(0, 1);
-    if (kind < 0.60) addCell(placeOfMainCell(), true);
-    if (kind > 0.45 && kind < 0.68) addSeveralCells();
+    if (kind < 0.58) addCell(placeOfMainCell(), true);
+    if (kind > 0.42 && kind < 0.66) addSeveralCells();
     const bool has_cell = !made_.scene.cells.empty();
     if (random_.chance(has_cell ? 0.35 : 0.2)) addHolding();
     if (random_.chance(has_cell ? 0.35 : 0.6)) addInjection();
@@ -225,7 +225,7 @@ class TrainingSceneMaker {
     cell.zona.absorption = random_.within(-0.12, 0.25);
     cell.perivitelline.absorption = -cell.zona.absorption * random_.within(0.3, 1.2);
     cell.cytoplasm.absorption = has_zona_ ? random_.within(-0.05, 0.5) : random_.within(-0.1, 0.3);
-    if (random_.chance(0.25)) {  // full of lipid
+    if (random_.chance(0.3)) {  // full of lipid
       cell.cytoplasm.absorption = random_.within(0.4, 0.95);
       cell.cytoplasm.granules *= random_.within(0, 1);
     }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 
 namespace microinjection {
 namespace {
@@ -71,6 +72,23 @@ TEST(Segmentation, TellsWhatTheFrameCuts) {
 TEST(Segmentation, HasNothingOfAClassThatIsNotThere) {
   EXPECT_FALSE(drawn({400, 300}, 150, 200).largestRegion({PixelClass::kBubble}));
   EXPECT_EQ(cv::countNonZero(drawn({400, 300}, 150, 200).mask({PixelClass::kBubble})), 0);
+}
+
+TEST(Segmentation, FindsTheEndOfWhatEntersThroughTheBorder) {
+  const cv::Size frame(1024, 768);
+  std::array<cv::Mat, kPixelClasses> planes;
+  for (cv::Mat& plane : planes) plane = cv::Mat(Segmentation::kHeight, Segmentation::kWidth, CV_32F, cv::Scalar(0));
+  // A cone from the right border to (40, 30), and a blunt tube from the left one to (20, 70), in output px.
+  const std::vector<cv::Point> cone = {{40, 30}, {127, 38}, {127, 52}};
+  cv::fillConvexPoly(planes[static_cast<std::size_t>(PixelClass::kInjectionPipette)], cone, 1);
+  cv::rectangle(planes[static_cast<std::size_t>(PixelClass::kHoldingPipette)], cv::Rect(0, 60, 21, 21), 1, cv::FILLED);
+  const Segmentation segmentation(planes, WorkingImage(cv::Mat(frame, CV_32F, 0.5F)), frame);
+  const auto tip = segmentation.endOf(*segmentation.largestRegion({PixelClass::kInjectionPipette}));
+  const auto mouth = segmentation.endOf(*segmentation.largestRegion({PixelClass::kHoldingPipette}));
+  ASSERT_TRUE(tip && mouth);
+  EXPECT_LT(cv::norm(*tip - segmentation.toFrame({40, 30})), 10);
+  EXPECT_LT(cv::norm(*mouth - segmentation.toFrame({20, 70})), 6);
+  EXPECT_FALSE(drawn({400, 300}, 150, 200).endOf(*drawn({400, 300}, 150, 200).largestRegion(kCell)));
 }
 
 TEST(Segmentation, HasMasksOfBothSizes) {
