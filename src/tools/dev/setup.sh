@@ -2,12 +2,7 @@
 # ./dev setup: the packages of dependencies.txt that this machine lacks; --peers, --cluster, --training: those of
 # benchmark/peers, src/workflow or src/vision/segmentation_training, too.
 
-command_setup_training() {
-  [[ $(package_column) == 1 ]] || fail "./dev train needs PyTorch 1.13 as Debian 12 has it: take it from its makers"
-  install_list "$TRAINING/dependencies.txt" 1
-}
-
-setup() {
+command_setup() {
   [[ $* == "" || $* == --peers || $* == --cluster || $* == --training ]] ||
     misuse "setup takes nothing, --peers, --cluster or --training, not '$*'"
   setup
@@ -23,6 +18,11 @@ setup() {
       ;;
     --training) setup_training ;;
   esac
+}
+
+setup_training() {
+  [[ $(package_column) == 1 ]] || fail "./dev train needs PyTorch 1.13 as Debian 12 has it: take it from its makers"
+  install_list "$TRAINING/dependencies.txt" 1
 }
 
 setup() {
