@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <map>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <sstream>
@@ -44,25 +45,35 @@ std::string number(double value, const char* pattern) {
   return std::isfinite(value) ? text : "";
 }
 
+/// Pixels of each class: in truth, as said, and both.
+struct ClassCounts {
+  std::array<double, kPixelClasses> truth{}, said{}, both{};
+
+  void add(const cv::Mat& label, const cv::Mat& classes) {
+    for (std::size_t i = 0; i < kPixelClasses; ++i) {
+      const cv::Mat is = label == static_cast<int>(i), says = (classes == static_cast<int>(i)) & (label != kNoLabel);
+      truth[i] += cv::countNonZero(is);
+      said[i] += cv::countNonZero(says);
+      both[i] += cv::countNonZero(is & says);
+    }
+  }
+};
+
 void renderedRows(Segmenter& segmenter) {
-  std::array<double, kPixelClasses> truth{}, guess{}, both{};
+  std::map<std::string, ClassCounts> looks;
   TrainingImages source;
   for (std::uint64_t seed = first_seed; seed < first_seed + static_cast<std::uint64_t>(images); ++seed) {
     const TrainingImage image = source.make(seed);
     const Frame frame(image.picture);
     if (!frame.refusal().empty()) continue;
     const cv::Mat label = workingLabel(image.label, WorkingImage(frame.grey()));
-    const cv::Mat said = segmenter.segment(frame).classes();
-    for (std::size_t i = 0; i < kPixelClasses; ++i) {
-      const cv::Mat is = label == static_cast<int>(i), says = (said == static_cast<int>(i)) & (label != kNoLabel);
-      truth[i] += cv::countNonZero(is);
-      guess[i] += cv::countNonZero(says);
-      both[i] += cv::countNonZero(is & says);
-    }
+    const cv::Mat classes = segmenter.segment(frame).classes();
+    for (const std::string& look : {std::string("all looks"), image.look}) looks[look].add(label, classes);
   }
-  for (std::size_t i = 0; i < kPixelClasses; ++i)
-    take(std::string("rendered,,") + kPixelClassNames[i] + "," + number(2 * both[i] / (truth[i] + guess[i]), "%.3f") +
-         ",,,\n");
+  for (const auto& [look, counts] : looks)
+    for (std::size_t i = 0; i < kPixelClasses; ++i)
+      take("rendered," + look + "," + kPixelClassNames[i] + "," +
+           number(2 * counts.both[i] / (counts.truth[i] + counts.said[i]), "%.3f") + ",,,\n");
 }
 
 /// A line of GROUND_TRUTH.csv.
@@ -105,10 +116,10 @@ std::initializer_list<PixelClass> classesOf(const std::string& object) {
   static const std::initializer_list<PixelClass> inner = {PixelClass::kPerivitellineSpace, PixelClass::kOoplasm,
                                                           PixelClass::kPolarBody};
   static const std::initializer_list<PixelClass> ooplasm = {PixelClass::kOoplasm};
-  static const std::initializer_list<PixelClass> needle = {PixelClass::kInjectionPipette};
-  static const std::initializer_list<PixelClass> holding = {PixelClass::kHoldingPipette, PixelClass::kBoreMedium};
-  if (object == "pipette_tip") return needle;
-  if (object == "pipette_mouth") return holding;
+  // The glass of either kind: which of them it is, is another question than where it ends.
+  static const std::initializer_list<PixelClass> pipette = {PixelClass::kInjectionPipette, PixelClass::kHoldingPipette,
+                                                            PixelClass::kBoreMedium};
+  if (object == "pipette_tip" || object == "pipette_mouth") return pipette;
   return object == "zona_outer" ? cell : object == "zona_inner" ? inner : ooplasm;
 }
 

@@ -49,6 +49,7 @@ TrainingImage TrainingImages::panel(std::uint64_t seed) {
   RandomDraw random(seed);
   const TrainingScene drawn = drawTrainingScene(random);
   TrainingImage image;
+  image.look = drawn.microscope.look.kind;
   image.label = labelImage(drawn.scene, drawn.microscope.camera);
   cv::Mat light = render(drawn, random, texture_);
   addSpecimenEffects(random, light, image.label);
