@@ -108,7 +108,7 @@ cv::Mat softStep(const cv::Mat& distance, double softness) {
 /// The dark, blurred wall of a well or drop, which hides what is behind it.
 void addWell(RandomDraw& random, cv::Mat& light, cv::Mat& label) {
   const cv::Mat inside = insideLargeCircle(random, light.size());
-  const double diagonal = std::hypot(light.cols, light.rows), softest = 0.06 * diagonal;
+  const double diagonal = std::hypot(light.cols, light.rows), softest = 0.12 * diagonal;
   cv::Mat dark = softStep(inside, random.within(0.6, softest));
   if (random.chance(0.6))
     dark = dark.mul(1 - softStep(inside - random.within(0.05, 0.5) * diagonal, random.within(0.6, softest)));
