@@ -39,9 +39,10 @@ class PolledManipulator : public MoveByMove {
     std::size_t longest_reading;   ///< bytes of a position request and its reply
     double stop_duration;          ///< s, to come to rest
     bool moved_by_hand;            ///< the operator may move it while this program controls it
+    int move_replies = 2;          ///< exchanges for a move, with its setting
   };
   struct Plan {
-    std::string setting;   ///< a line sent before, unless it was the last one; empty: none
+    std::string setting;   ///< a line sent and read back before, unless it is set already; empty: none
     std::string move;      ///< the line of the move; both are acknowledged
     double duration = 0;   ///< s, of the move
     double speed = 0;      ///< m/s, along the path; exceeds the requested one if the device cannot move that slowly
@@ -61,7 +62,9 @@ class PolledManipulator : public MoveByMove {
   virtual std::string handleSetup(int step, const std::string& reply) = 0;
   /// Counts of the device's axes; empty for a malformed line.
   virtual std::optional<Eigen::Vector3d> readPosition(const std::string& reply) = 0;
-  /// A request that shows after a failure whether `setting`, the last confirmed one, is still set.
+  /// Whether setup(step) sets what would stay wrong if the line has changed it: then it is read back.
+  virtual bool isReadBack(int /*step*/) const { return false; }
+  /// A request that shows whether `setting` is set: after it was sent, and after a failure.
   virtual std::string settingQuery(const std::string& setting) const = 0;
   virtual bool isKept(const std::string& setting, const std::string& reply) const = 0;
   virtual std::optional<bool> readMotion(const std::string& /*reply*/) const { return std::nullopt; }
@@ -80,7 +83,7 @@ class PolledManipulator : public MoveByMove {
   void exchange(const std::string& bytes) final;
 
  private:
-  enum class Kind { kSettingCheck, kSetup, kStop, kPosition, kMotion, kMove };
+  enum class Kind { kSettingCheck, kSetup, kStop, kPosition, kMotion, kSetting, kReadBack, kMove };
   struct Exchange {
     Kind kind;
     std::string line;
@@ -89,7 +92,10 @@ class PolledManipulator : public MoveByMove {
   };
   /// The move in progress.
   struct Progress {
-    std::string setting, move;            // lines that are still to be sent
+    std::string setting, move;            // lines that are still to be sent; of `setting`: to be read back
+    bool setting_sent = false;            // and acknowledged
+    int unset_replies = 0;                // successive replies without `setting`
+    int setting_tries = 0;                // in which it was not set
     double end = 0;                       // s, end of the move
     double overdue = 0;                   // s of activeTime(), latest arrival
     double next = 0;                      // s, earliest start of the next move, for a speed below the device's
@@ -105,6 +111,8 @@ class PolledManipulator : public MoveByMove {
   void handle(const std::string& reply);
   void handleSetupReply(const std::string& reply);
   void handleLostSetting();
+  void handleReadBack(const std::string& reply);
+  void handleUnset(const std::string& setting, const std::string& reply, int tries);
   void handleMotion(const std::string& reply);
   void handlePosition(const std::string& reply);
   void updatePosition(const Eigen::Vector3d& position);
@@ -118,6 +126,7 @@ class PolledManipulator : public MoveByMove {
   void request(Kind kind, const std::string& line);
   void next();
   void sendMove();
+  void sendSetting();
   void nextOfMove();
   void nextTowardsGoal();
 
@@ -133,7 +142,9 @@ class PolledManipulator : public MoveByMove {
   int setup_step_ = 0;
   std::optional<std::string> setup_reply_;  // the last reply to this step
   int setup_tries_ = 0;
-  std::string setting_;           // of the last move with one; empty: unknown
+  bool setup_sent_ = false;       // this step's line was accepted, and is read back
+  int setup_unset_ = 0;           // times that it was not set
+  std::string setting_;           // of the last move with one, as read back; empty: unknown
   std::string confirmed_;         // last confirmed setting; survives a failed session
   int lost_setting_replies_ = 0;  // successive replies without the setting
   bool check_setting_ = false, stop_requested_ = false, motion_requested_ = false;

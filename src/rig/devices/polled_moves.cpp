@@ -16,11 +16,14 @@ constexpr int kShorter = 5;          // attempts to shorten a part of the path
 
 }  // namespace
 
+/// Sends the setting of the move, then asks for it.
+void PolledManipulator::sendSetting() {
+  setting_.clear();
+  if (progress_.setting_sent) return request(Kind::kReadBack, settingQuery(progress_.setting));
+  request(Kind::kSetting, progress_.setting);
+}
+
 void PolledManipulator::sendMove() {
-  if (!progress_.setting.empty()) {
-    setting_ = std::exchange(progress_.setting, "");  // if this fails, the next session discards it
-    return request(Kind::kMove, setting_);
-  }
   const std::string line = std::exchange(progress_.move, "");
   origin_monitor_.setMove(move_->to);
   move_->begin = time() + static_cast<double>(line.size() + 1) * common_.byteTime();
@@ -31,6 +34,7 @@ void PolledManipulator::sendMove() {
 }
 
 void PolledManipulator::nextOfMove() {
+  if (!progress_.setting.empty()) return sendSetting();
   if (!progress_.move.empty()) return sendMove();
   if (isOutdated()) return stopFirst();
   if (!dialect_.motion.empty() && !motion_requested_) return request(Kind::kMotion, dialect_.motion);

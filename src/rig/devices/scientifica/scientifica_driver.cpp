@@ -18,7 +18,8 @@ PolledManipulator::Dialect dialect(const ScientificaConfig& config) {
   dialect.stop = "STOP";
   dialect.position = config.version == 2 ? "POS" : "P";
   dialect.motion = "S";
-  dialect.longest_move = 50;
+  dialect.longest_move = 60;  // TOP, its reading back, ABS, and their replies
+  dialect.move_replies = 3;
   dialect.longest_reading = 36;  // includes S and its reply
   dialect.stop_duration = config.speed / config.acceleration;
   dialect.moved_by_hand = true;
@@ -94,6 +95,8 @@ std::string ScientificaDriver::handleSetup(int step, const std::string& reply) {
       return reply == "A" ? "" : "refused";
   }
 }
+
+bool ScientificaDriver::isReadBack(int step) const { return step == kAcceleration || step == kStartSpeed; }
 
 /// A setting is a word and a number; the word alone requests the number.
 std::string ScientificaDriver::settingQuery(const std::string& setting) const {
