@@ -218,6 +218,7 @@ void PolledManipulator::handlePosition(const std::string& reply) {
   exchange_.reset();
   motion_requested_ = false;
   exchangeSucceeded();
+  if (isTooFar(*position)) return handleTooFast();
   updatePosition(*position);
 }
 

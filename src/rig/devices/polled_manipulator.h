@@ -26,6 +26,9 @@ struct PolledManipulatorConfig : MoveByMoveConfig {
 /// agree. A new position at rest, on an intact line, means a manual displacement if the device
 /// allows it. Then the settings are sent again, since the device may have been switched off and on
 /// before.
+///
+/// A device whose reading is further along the move than it can have come at the commanded speed was told another one
+/// by the line. It is stopped at once and goes on from where it rests; a second such move in a row is a fault.
 class PolledManipulator : public MoveByMove {
  public:
   struct Dialect {
@@ -96,6 +99,9 @@ class PolledManipulator : public MoveByMove {
     bool setting_sent = false;            // and acknowledged
     int unset_replies = 0;                // successive replies without `setting`
     int setting_tries = 0;                // in which it was not set
+    Eigen::Vector3d from{0, 0, 0};        // counts, where the move began
+    double sent = 0;                      // s, when its line was sent
+    double speed = 0;                     // m/s, along the move, as commanded
     double end = 0;                       // s, end of the move
     double overdue = 0;                   // s of activeTime(), latest arrival
     double next = 0;                      // s, earliest start of the next move, for a speed below the device's
@@ -120,6 +126,8 @@ class PolledManipulator : public MoveByMove {
   bool faultAstray(const Eigen::Vector3d& position);
   Eigen::Vector3d pointOnPath(const Eigen::Vector3d& from, double share) const;
   void checkMove(const Eigen::Vector3d& position);
+  bool isTooFar(const Eigen::Vector3d& position) const;
+  void handleTooFast();
   void handleMissedGoal(const Eigen::Vector3d& position);
   void handleMalformedReply(const std::string& reply);
   void forgetSettings();
@@ -133,6 +141,7 @@ class PolledManipulator : public MoveByMove {
   /// s of motion by which an extrapolated position may be wrong, and axes of unequal speed beside their line.
   static constexpr double kExtrapolatedMotion = 0.1;
   static constexpr double kStraight = 1e-6;  // m, by which a slow device may be beside its line, besides 2 counts
+  static constexpr double kFaster = 1.1;     // of the commanded speed; a device that has come further was told another
 
   const double reading_margin_;  // m
   double line_margin_ = 0;       // m, by which a reading of the last move may be beside its line
@@ -150,6 +159,7 @@ class PolledManipulator : public MoveByMove {
   bool check_setting_ = false, stop_requested_ = false, motion_requested_ = false;
   double next_move_ = 0;  // s
   int overdue_ = 0;       // readings under way, since a move has arrived
+  int too_fast_ = 0;      // moves in a row that were too fast
   Progress progress_;
 };
 
