@@ -184,6 +184,7 @@ volatile std::sig_atomic_t pauses = 0;
   ZaberConfig config;
   config.joints.origin.setConstant(-12.5e-3);
   config.port.path = link;
+  config.reply_timeout = 3;  // s: the machine may hold the emulated device up, whose silence would be a fault
   ZaberDriver driver(config, std::make_unique<SerialPort>(config.port));
   const auto geometry = ManipulatorGeometry::fromUrdf(rigUrdf(), 0);
   Micromanipulator needle(geometry, CollisionGuard(rigUrdf(), geometry, 2e-6), {}, driver);
