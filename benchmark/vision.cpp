@@ -25,7 +25,8 @@ constexpr const char* kFolderVariable = "MICROINJECTION_MICROGRAPHS";
 struct VisionOptions {
   int images = 40;
   std::uint64_t seed = 100001;
-  std::string only, transform, contact_sheet;
+  std::string only, contact_sheet;
+  std::vector<std::string> transforms;
   bool pipettes_only = false, told = false;
 };
 
@@ -39,20 +40,27 @@ std::string rowOf(const VisionRow& row) {
          numberText(1e3 * row.time, "%.3f") + '\n';
 }
 
-void requireTransform(const std::string& name) {
-  std::string known;
-  for (const ImageTransform& each : imageTransforms()) {
-    if (name.empty() || each.name == name) return;
-    known += (known.empty() ? "" : ", ") + each.name;
+/// The transforms that --transform names, or all.
+std::vector<ImageTransform> chosenTransforms() {
+  const std::vector<ImageTransform> all = imageTransforms();
+  if (vision_options.transforms.empty()) return all;
+  std::vector<ImageTransform> chosen;
+  for (const std::string& name : vision_options.transforms) {
+    const auto place =
+        std::find_if(all.begin(), all.end(), [&](const ImageTransform& each) { return each.name == name; });
+    if (place == all.end()) {
+      std::string known;
+      for (const ImageTransform& each : all) known += (known.empty() ? "" : ", ") + each.name;
+      throw ConfigError("--transform " + name + ": no such transform; there are " + known);
+    }
+    chosen.push_back(*place);
   }
-  throw ConfigError("--transform " + name + ": no such transform; there are " + known);
+  return chosen;
 }
 
 void measureReal(const Micrographs& micrographs, const TakeRow& take) {
-  requireTransform(vision_options.transform);
-  realRows(micrographs, vision_options.transform, RealSetup::kDefault, take);
-  if (vision_options.told) realRows(micrographs, vision_options.transform, RealSetup::kTold, take);
-  if (!vision_options.transform.empty()) return;
+  realRows(micrographs, chosenTransforms(), vision_options.told ? RealSetup::kTold : RealSetup::kDefault, take);
+  if (!vision_options.transforms.empty()) return;
   focusStackRows(micrographs, take);
   sequenceRows(micrographs, take);
 }
@@ -101,9 +109,10 @@ int main(int argc, char** argv) {
   add("seed", po::value(&options.seed)->default_value(options.seed),
       "of the first image; constants are chosen with seeds below 100000");
   add("pipettes", po::bool_switch(&options.pipettes_only), "rendered images: measures the pipettes only");
-  add("transform", po::value(&options.transform), "real images: under this transform only, such as identity");
+  add("transform", po::value(&options.transforms)->multitoken(),
+      "real images: under these transforms only, such as identity");
   add("told", po::bool_switch(&options.told),
-      "real images: measures them a second time, told look and directions of the pipettes");
+      "real images: look and directions of the pipettes are those of the image, not the default ones");
   add("contact-sheet", po::value(&options.contact_sheet),
       "PNG to write: the real images with what is found in them, told look and directions");
   return microinjection::benchMain(argc, argv,

@@ -119,6 +119,19 @@ MarkedImage noisy(const MarkedImage& original, double deviation) {
   return withGrey(original, fraction + noise);
 }
 
+/// With a scale bar and its length burnt in, which do not reach the border.
+MarkedImage withScaleBar(const MarkedImage& original) {
+  MarkedImage changed = original;
+  changed.image = original.image.clone();
+  const int width = changed.image.cols / 8, height = std::max(3, changed.image.rows / 130), margin = 3 * height;
+  const cv::Point corner(changed.image.cols - margin - width, changed.image.rows - margin - height);
+  const cv::Scalar white = cv::Scalar::all(fullScale(original.image));
+  cv::rectangle(changed.image, cv::Rect(corner, cv::Size(width, height)), white, cv::FILLED);
+  cv::putText(changed.image, "50 um", corner - cv::Point(0, height), cv::FONT_HERSHEY_SIMPLEX, height / 8.0, white,
+              std::max(1, height / 4), cv::LINE_AA);
+  return changed;
+}
+
 double turnedBy(const cv::Matx23d& map, double direction) {
   const double c = std::cos(direction), s = std::sin(direction);
   return std::atan2(map(1, 0) * c + map(1, 1) * s, map(0, 0) * c + map(0, 1) * s);
@@ -187,6 +200,7 @@ std::vector<ImageTransform> imageTransforms() {
       {"noise_4", [](const MarkedImage& image) { return noisy(image, 4); }},
       {"noise_1", [](const MarkedImage& image) { return noisy(image, 1); }},
       {"dark_squared", darkSquared},
+      {"scale_bar", withScaleBar},
   };
 }
 

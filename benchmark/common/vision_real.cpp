@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "base/cpu_time.h"
-#include "benchmark/common/image_transform.h"
 #include "benchmark/common/stated_interval.h"
 
 namespace microinjection {
@@ -173,15 +172,14 @@ SpecimenTrackerConfig trackerConfig(const MarkedImage& image, RealSetup setup) {
   return config;
 }
 
-void realRows(const Micrographs& micrographs, const std::string& transform, RealSetup setup, const TakeRow& take) {
+void realRows(const Micrographs& micrographs, const std::vector<ImageTransform>& transforms, RealSetup setup,
+              const TakeRow& take) {
   cv::setNumThreads(1);
-  const std::vector<ImageTransform> transforms = imageTransforms();
   for (const std::string& name : micrographs.names()) {
     const MarkedImage original = micrographs.load(name);
     for (const ImageTransform& each : transforms) {
-      if (!transform.empty() && each.name != transform) continue;
       const std::string set = (setup == RealSetup::kTold ? "told/" : "real/") + each.name;
-      imageRows(set, each.apply(original), setup, &each == transforms.data(), take);
+      imageRows(set, each.apply(original), setup, each.name == "identity", take);
     }
   }
 }

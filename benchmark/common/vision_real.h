@@ -1,7 +1,8 @@
 #pragma once
 
-#include <string>
+#include <vector>
 
+#include "benchmark/common/image_transform.h"
 #include "benchmark/common/marked_image.h"
 #include "benchmark/common/micrographs.h"
 #include "benchmark/common/vision_row.h"
@@ -17,10 +18,10 @@ enum class RealSetup {
 
 SpecimenTrackerConfig trackerConfig(const MarkedImage& image, RealSetup setup);
 
-/// Rows of all images under the transforms of imageTransforms(): the set is real/TRANSFORM, or told/TRANSFORM. A frame
-/// is searched as the node vision does with its first one.
-/// @param transform  its name, or empty for all
-void realRows(const Micrographs& micrographs, const std::string& transform, RealSetup setup, const TakeRow& take);
+/// Rows of all images under the transforms: the set is real/TRANSFORM, or told/TRANSFORM. A frame is searched as the
+/// node vision does with its first one. Without a transform frames are tracked, too, for the time that it takes.
+void realRows(const Micrographs& micrographs, const std::vector<ImageTransform>& transforms, RealSetup setup,
+              const TakeRow& take);
 
 /// Rows of the three focus stacks of a standing stage: the plane of best focus, by both measures of sharpness and with
 /// their windows where the tip was found, and the scale of the stage's steps.

@@ -10,6 +10,7 @@
 namespace microinjection {
 namespace {
 
+constexpr int kStartPlane = 8;
 constexpr int kStackPlanes = 17;                           // 1 um apart
 constexpr double kBestPlane = 8.5, kFocusLimit = 0.5;      // planes
 constexpr double kStageScale = 5.38, kScaleLimit = 0.005;  // px for 1 um; of the scale
@@ -22,7 +23,8 @@ std::string planeName(int stage, int plane) {
 /// The planes of a stack, and where its tip is: the stage stands still, so there is one window for all planes.
 struct TipStack {
   std::vector<Frame> frames;
-  std::vector<double> x, y, half_widths;  ///< px, of the tips that are sure
+  std::vector<double> x, y;  ///< px, of the tips that are sure
+  PipetteDetection start;    ///< of the plane nearest to the best one, as a search of the focus starts with
 };
 
 TipStack readStack(const Micrographs& micrographs, int stage) {
@@ -32,10 +34,10 @@ TipStack readStack(const Micrographs& micrographs, int stage) {
     stack.frames.emplace_back(image.image);
     const PipetteDetector detector(trackerConfig(image, RealSetup::kTold).injection);
     const PipetteDetection found = detector.detect(stack.frames.back());
+    if (plane == kStartPlane) stack.start = found;
     if (!found.finding.isFound()) continue;
     stack.x.push_back(found.end.x);
     stack.y.push_back(found.end.y);
-    stack.half_widths.push_back(found.half_width);
   }
   return stack;
 }
@@ -82,15 +84,16 @@ void focusStackRows(const Micrographs& micrographs, const TakeRow& take) {
     const TipStack stack = readStack(micrographs, stage);
     if (stack.x.empty()) continue;
     const cv::Point2d tip(medianOf(stack.x), medianOf(stack.y));
-    const double direction = micrographs.load(planeName(stage, 8)).needle;
+    const double direction = micrographs.load(planeName(stage, kStartPlane)).needle;
     tips[stage] = tip;
     take(bestPlaneRow(stage, "best_plane_walls", stack,
                       [&](const Frame& frame) { return tipSharpness(frame, tip, direction); }));
-    const int advised = static_cast<int>(std::lround(kCoreOfRadius * medianOf(stack.half_widths)));
+    const PipetteDetection& seen = stack.start;
+    const int advised = static_cast<int>(std::lround(kCoreOfRadius * seen.half_width));
     for (const auto& [what, core] : {std::pair<std::string, int>{"best_plane_core", TipInImage{}.core},
                                      std::pair<std::string, int>{"best_plane_core_fit", std::max(1, advised)}}) {
       take(bestPlaneRow(stage, what, stack, [&, half = core](const Frame& frame) {
-        return coreSharpness(frame, {tip, direction, half});
+        return coreSharpness(frame, {seen.end, seen.direction, half});
       }));
     }
   }
