@@ -19,6 +19,13 @@ double fullScale(const cv::Mat& image) {
   return std::exp2(std::ceil(std::log2(most + 1))) - 1;
 }
 
+/// The same with another image: one that is written into its matrix would be written into the original's.
+MarkedImage withImage(const MarkedImage& original, const cv::Mat& image) {
+  MarkedImage changed = original;
+  changed.image = image;
+  return changed;
+}
+
 /// Grey values of full scale 1 in all channels.
 cv::Mat asFraction(const cv::Mat& image) {
   cv::Mat fraction;
@@ -28,18 +35,16 @@ cv::Mat asFraction(const cv::Mat& image) {
 
 /// The image with other grey values (of full scale 1) of the same format.
 MarkedImage withGrey(const MarkedImage& original, const cv::Mat& fraction) {
-  MarkedImage changed = original;
-  const double full = fullScale(original.image);
-  cv::Mat bounded;
-  cv::min(fraction, 1, bounded);
-  bounded.convertTo(changed.image, original.image.depth(), full);
-  return changed;
+  cv::Mat image;
+  cv::min(fraction, 1, image);
+  image.convertTo(image, original.image.depth(), fullScale(original.image));
+  return withImage(original, image);
 }
 
 MarkedImage withBytes(const MarkedImage& original, const cv::Mat& fraction) {
-  MarkedImage changed = original;
-  fraction.convertTo(changed.image, CV_8U, kByte);
-  return changed;
+  cv::Mat image;
+  fraction.convertTo(image, CV_8U, kByte);
+  return withImage(original, image);
 }
 
 double medianOfImage(const cv::Mat& fraction) {
@@ -91,17 +96,15 @@ MarkedImage darkSquared(const MarkedImage& original) {
 }
 
 MarkedImage twelveBits(const MarkedImage& original) {
-  MarkedImage changed = original;
-  asFraction(original.image).convertTo(changed.image, CV_16U, 4095);
-  return changed;
+  cv::Mat image;
+  asFraction(original.image).convertTo(image, CV_16U, 4095);
+  return withImage(original, image);
 }
 
 MarkedImage compressed(const MarkedImage& original) {
-  MarkedImage changed = withBytes(original, asFraction(original.image));
   std::vector<unsigned char> file;
-  cv::imencode(".jpg", changed.image, file, {cv::IMWRITE_JPEG_QUALITY, 30});
-  changed.image = cv::imdecode(file, cv::IMREAD_UNCHANGED);
-  return changed;
+  cv::imencode(".jpg", withBytes(original, asFraction(original.image)).image, file, {cv::IMWRITE_JPEG_QUALITY, 30});
+  return withImage(original, cv::imdecode(file, cv::IMREAD_UNCHANGED));
 }
 
 /// Moved by 5 px to the right during the exposure: the marks are where the middle of the motion is.
@@ -121,8 +124,7 @@ MarkedImage noisy(const MarkedImage& original, double deviation) {
 
 /// With a scale bar and its length burnt in, which do not reach the border.
 MarkedImage withScaleBar(const MarkedImage& original) {
-  MarkedImage changed = original;
-  changed.image = original.image.clone();
+  MarkedImage changed = withImage(original, original.image.clone());
   const int width = changed.image.cols / 8, height = std::max(3, changed.image.rows / 130), margin = 3 * height;
   const cv::Point corner(changed.image.cols - margin - width, changed.image.rows - margin - height);
   const cv::Scalar white = cv::Scalar::all(fullScale(original.image));
@@ -139,8 +141,7 @@ double turnedBy(const cv::Matx23d& map, double direction) {
 
 /// The marks of an image whose points `map` has moved.
 MarkedImage withMap(const MarkedImage& original, const cv::Matx23d& map, const cv::Mat& image) {
-  MarkedImage changed = original;
-  changed.image = image;
+  MarkedImage changed = withImage(original, image);
   const double scale = std::sqrt(std::abs(map(0, 0) * map(1, 1) - map(0, 1) * map(1, 0)));
   changed.scale *= scale;
   changed.needle = turnedBy(map, original.needle);
