@@ -26,7 +26,7 @@ struct VisionOptions {
   int images = 40;
   std::uint64_t seed = 100001;
   std::string only, contact_sheet;
-  std::vector<std::string> transforms;
+  std::vector<std::string> transforms, micrographs;
   bool pipettes_only = false, told = false;
 };
 
@@ -60,7 +60,7 @@ std::vector<ImageTransform> chosenTransforms() {
 
 void measureReal(const Micrographs& micrographs, const TakeRow& take) {
   realRows(micrographs, chosenTransforms(), vision_options.told ? RealSetup::kTold : RealSetup::kDefault, take);
-  if (!vision_options.transforms.empty()) return;
+  if (!vision_options.transforms.empty() || !vision_options.micrographs.empty()) return;
   focusStackRows(micrographs, take);
   sequenceRows(micrographs, take);
 }
@@ -86,7 +86,8 @@ std::string table() {
   }
   const char* folder = std::getenv(kFolderVariable);
   if (folder != nullptr && (only.empty() || only == "real")) {
-    const Micrographs micrographs(folder);
+    Micrographs micrographs(folder);
+    if (!vision_options.micrographs.empty()) micrographs.keepOnly(vision_options.micrographs);
     if (!vision_options.contact_sheet.empty()) writeContactSheet(micrographs);
     measureReal(micrographs, take);
   }
@@ -111,6 +112,8 @@ int main(int argc, char** argv) {
   add("pipettes", po::bool_switch(&options.pipettes_only), "rendered images: measures the pipettes only");
   add("transform", po::value(&options.transforms)->multitoken(),
       "real images: under these transforms only, such as identity");
+  add("micrograph", po::value(&options.micrographs)->multitoken(),
+      "real images: those only whose file has one of these parts in its name, such as vampy/ or stack6.8");
   add("told", po::bool_switch(&options.told),
       "real images: look and directions of the pipettes are those of the image, not the default ones");
   add("contact-sheet", po::value(&options.contact_sheet),

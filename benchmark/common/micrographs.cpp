@@ -79,6 +79,14 @@ Micrographs::Micrographs(const std::string& folder) : folder_(folder) {
   std::sort(names_.begin(), names_.end());
 }
 
+void Micrographs::keepOnly(const std::vector<std::string>& parts) {
+  const auto is_left_out = [&](const std::string& name) {
+    return std::none_of(parts.begin(), parts.end(),
+                        [&](const std::string& part) { return name.find(part) != std::string::npos; });
+  };
+  names_.erase(std::remove_if(names_.begin(), names_.end(), is_left_out), names_.end());
+}
+
 std::vector<ImageMark> Micrographs::marksOf(const std::string& name) const {
   std::vector<ImageMark> marks;
   const std::optional<StackPlane> here = stackPlane(name);

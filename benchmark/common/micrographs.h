@@ -15,6 +15,8 @@ class Micrographs {
   explicit Micrographs(const std::string& folder);
 
   const std::vector<std::string>& names() const { return names_; }  ///< of the images in their sources
+  /// Leaves those whose name has one of the parts in it.
+  void keepOnly(const std::vector<std::string>& parts);
   /// Throws ConfigError when it cannot be read.
   MarkedImage load(const std::string& name) const;
 
