@@ -8,7 +8,7 @@
 namespace microinjection {
 namespace {
 
-constexpr int kColumns = 8, kText = 34;  // px, height of the two lines below a thumbnail
+constexpr int kColumns = 8, kText = 48;  // px, height of the three lines below a thumbnail
 const cv::Size kThumbnail(400, 300);
 
 std::string sheetVerdict(const std::string& thing, const Finding& finding) {
@@ -31,9 +31,10 @@ cv::Mat thumbnailOf(const MarkedImage& image) {
   writeLine(whole, image.name, kThumbnail.height + 12);
   writeLine(whole,
             sheetVerdict("cell", view.cell.finding) + sheetVerdict("size", view.cell.size) +
-                sheetVerdict("zona", view.cell.zona_outer.finding) + sheetVerdict("tip", view.injection.finding) +
-                sheetVerdict("mouth", view.holding.finding),
+                sheetVerdict("zona", view.cell.zona_outer.finding),
             kThumbnail.height + 27);
+  writeLine(whole, sheetVerdict("tip", view.injection.finding) + sheetVerdict("mouth", view.holding.finding),
+            kThumbnail.height + 42);
   return whole;
 }
 
