@@ -30,8 +30,9 @@ YAML::Node withMeasuredSize(const YAML::Node& scene, double diameter, double zon
 
 void requireSeenZona(const YAML::Node& scene, const CellMeasurement& cell) {
   if (layersOf(scene) == 2 && !cell.zona_thickness)
-    throw ConfigError("the scene has a zona, and none was found in the image: its thickness would be invented. Take a "
-                      "scene of one layer, or an image that shows the zona");
+    throw ConfigError(
+        "the scene has a zona, and none was found in the image: its thickness would be invented. Take a "
+        "scene of one layer, or an image that shows the zona");
 }
 
 YAML::Node withMeasuredSize(const YAML::Node& scene, const CellMeasurement& cell) {

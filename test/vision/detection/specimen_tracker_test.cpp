@@ -84,7 +84,8 @@ TEST_F(SpecimenTrackerTest, AnUncertainCellIsFollowedAndSometimesSearched) {
   ASSERT_FALSE(view.cell.size.isFound());
   // The searches become rarer: after the first ones they are 2, 4, 8 and 16 frames apart, then kSearchEvery.
   const Frame alone(microscope_.render(scene, focus, 2));
-  for (int i = 0; i < SearchPace::kFirst - 1 + 2 + 4 + 8 + 16 + SpecimenTracker::kSearchEvery; ++i) tracker_.next(alone);
+  for (int i = 0; i < SearchPace::kFirst - 1 + 2 + 4 + 8 + 16 + SpecimenTracker::kSearchEvery; ++i)
+    tracker_.next(alone);
   // A second cell is seen by a search of the whole frame only.
   scene.cells.push_back(CellScene::round({70e-6, 0}, kTrackedRadius, 6e-6, 0));
   const Frame both(microscope_.render(scene, focus, 2));
