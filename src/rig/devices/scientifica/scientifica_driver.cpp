@@ -8,6 +8,8 @@
 namespace microinjection {
 namespace {
 
+constexpr double kRounded = 0.02;  // of a setting
+
 enum Step { kMaker, kVersion, kScaleX, kScaleY, kScaleZ, kAcceleration, kStartSpeed, kSteps };
 
 PolledManipulator::Dialect dialect(const ScientificaConfig& config) {
@@ -103,8 +105,11 @@ std::string ScientificaDriver::settingQuery(const std::string& setting) const {
   return setting.substr(0, setting.find(' '));
 }
 
+/// A card may round what it was told; a digit that the line has changed moves it by more, or does no harm.
 bool ScientificaDriver::isKept(const std::string& setting, const std::string& reply) const {
-  return readScientificaNumber(reply) == readScientificaNumber(setting.substr(setting.find(' ') + 1));
+  const std::optional<double> told = readScientificaNumber(reply);
+  const std::optional<double> set = readScientificaNumber(setting.substr(setting.find(' ') + 1));
+  return told && set && std::abs(*told - *set) <= kRounded * std::abs(*set);
 }
 
 std::optional<Eigen::Vector3d> ScientificaDriver::readPosition(const std::string& reply) {
