@@ -2,95 +2,97 @@
 
 #include <algorithm>
 #include <boost/program_options.hpp>
-#include <cmath>
 #include <cstdio>
-#include <map>
+#include <cstdlib>
+#include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <vector>
 
+#include "base/errors.h"
 #include "benchmark/bench_main.h"
+#include "benchmark/common/contact_sheet.h"
+#include "benchmark/common/image_transform.h"
+#include "benchmark/common/printed_table.h"
 #include "benchmark/common/vision_cases.h"
+#include "benchmark/common/vision_real.h"
+#include "benchmark/common/vision_summary.h"
 
 namespace microinjection {
 namespace {
 
-int images = 40;
-std::uint64_t first_seed = 100001;
-std::string only;
-bool pipettes_only = false;
+constexpr const char* kFolderVariable = "MICROINJECTION_MICROGRAPHS";
 
-double quantileOf(std::vector<double> values, double share) {
-  if (values.empty()) return std::nan("");
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
-}
-
-/// A number, or nothing for one that there is not.
-std::string cell(double value, const char* pattern) {
-  if (!std::isfinite(value)) return "";
-  char text[40];
-  std::snprintf(text, sizeof text, pattern, value);
-  return text;
-}
-
-std::string rowOf(const VisionRow& row) {
-  std::string verdict = row.verdict;
-  return row.set + ',' + row.image + ',' + row.what + ',' + cell(row.error, "%.4f") + ',' + cell(row.relative, "%.6f") +
-         ',' + (row.found ? "1" : "0") + ',' + verdict + ',' + cell(1e3 * row.time, "%.3f") + '\n';
-}
-
-/// Errors are those of what was found without a warning.
-struct Summary {
-  std::vector<double> errors, times;
-  int count = 0, found = 0, sure = 0, wrong = 0;
+struct VisionOptions {
+  int images = 40;
+  std::uint64_t seed = 100001;
+  std::string only, contact_sheet;
+  std::vector<std::string> transforms, micrographs;
+  bool pipettes_only = false, told = false;
 };
 
-double rmsOf(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double value : values) sum += value * value;
-  return std::sqrt(sum / static_cast<double>(values.size()));
+VisionOptions vision_options;
+
+std::string rowOf(const VisionRow& row) {
+  const auto flag = [](const std::optional<bool>& value) { return value ? std::string(*value ? "1" : "0") : ""; };
+  return row.set + ',' + row.image + ',' + row.what + ',' + row.group + ',' + numberText(row.error, "%.4f") + ',' +
+         numberText(row.relative, "%.6f") + ',' + numberText(row.deviation, "%.4f") + ',' + flag(row.covered) + ',' +
+         flag(row.right) + ',' + (row.wrong ? "1" : "0") + ',' + row.verdict + ',' +
+         numberText(1e3 * row.time, "%.3f") + '\n';
 }
 
-void printSummary(const std::map<std::pair<std::string, std::string>, Summary>& all) {
-  std::printf("\n%-26s %-18s %6s %7s %7s %7s %8s %10s %8s %8s\n", "set", "what", "images", "found", "sure", "wrong",
-              "median", "nine_of_10", "rms", "time_ms");
-  for (const auto& [key, summary] : all) {
-    const double share = 100.0 / summary.count;
-    std::printf("%-26s %-18s %6d %6.1f%% %6.1f%% %6.2f%% %8s %10s %8s %8s\n", key.first.c_str(), key.second.c_str(),
-                summary.count, share * summary.found, share * summary.sure, share * summary.wrong,
-                cell(quantileOf(summary.errors, 0.5), "%.3f").c_str(),
-                cell(quantileOf(summary.errors, 0.9), "%.3f").c_str(), cell(rmsOf(summary.errors), "%.3f").c_str(),
-                cell(1e3 * quantileOf(summary.times, 0.5), "%.2f").c_str());
+/// The transforms that --transform names, or all.
+std::vector<ImageTransform> chosenTransforms() {
+  const std::vector<ImageTransform> all = imageTransforms();
+  if (vision_options.transforms.empty()) return all;
+  std::vector<ImageTransform> chosen;
+  for (const std::string& name : vision_options.transforms) {
+    const auto place =
+        std::find_if(all.begin(), all.end(), [&](const ImageTransform& each) { return each.name == name; });
+    if (place == all.end()) {
+      std::string known;
+      for (const ImageTransform& each : all) known += (known.empty() ? "" : ", ") + each.name;
+      throw ConfigError("--transform " + name + ": no such transform; there are " + known);
+    }
+    chosen.push_back(*place);
   }
-  std::printf(
-      "median, nine_of_10 and rms (px; axis and polar body: degrees) are those of what is sure: found without a "
-      "warning.\n"
-      "wrong: sure, and off by more than %g times what is asked for, or where there is nothing\n",
-      kWrongFactor);
+  return chosen;
+}
+
+void measureReal(const Micrographs& micrographs, const TakeRow& take) {
+  realRows(micrographs, chosenTransforms(), vision_options.told ? RealSetup::kTold : RealSetup::kDefault, take);
+  if (!vision_options.transforms.empty() || !vision_options.micrographs.empty()) return;
+  focusStackRows(micrographs, take);
+  sequenceRows(micrographs, take);
+}
+
+void writeContactSheet(const Micrographs& micrographs) {
+  std::vector<unsigned char> file;
+  cv::imencode(".png", contactSheet(micrographs), file);
+  writeFileAtomically(vision_options.contact_sheet, std::string(file.begin(), file.end()));
 }
 
 std::string table() {
-  std::string rows = "set,image,what,error_px,error_relative,found,verdict,time_ms\n";
-  std::fputs(rows.c_str(), stdout);
-  std::map<std::pair<std::string, std::string>, Summary> all;
+  PrintedTable rows;
+  VisionSummary summary;
+  rows.add("set,image,what,group,error_px,error_relative,deviation_px,covered,right,wrong,verdict,time_ms\n");
   const auto take = [&](const VisionRow& row) {
-    const std::string text = rowOf(row);
-    std::fputs(text.c_str(), stdout);
-    rows += text;
-    Summary& summary = all[{row.set, row.what}];
-    ++summary.count;
-    summary.found += row.found ? 1 : 0;
-    summary.wrong += row.wrong ? 1 : 0;
-    summary.sure += row.sure ? 1 : 0;
-    if (row.sure && std::isfinite(row.error)) summary.errors.push_back(row.error);
-    if (std::isfinite(row.time)) summary.times.push_back(row.time);
+    rows.add(rowOf(row));
+    summary.add(row);
   };
+  const std::string& only = vision_options.only;
   for (const VisionCondition& condition : visionConditions()) {
-    if (only.empty() || condition.name == only) renderedRows(condition, first_seed, images, pipettes_only, take);
+    if (!only.empty() && condition.name != only) continue;
+    renderedRows(condition, vision_options.seed, vision_options.images, vision_options.pipettes_only, take);
   }
-  if (only.empty() || only == "real") realRows(take);
-  printSummary(all);
-  return rows;
+  const char* folder = std::getenv(kFolderVariable);
+  if (folder != nullptr && (only.empty() || only == "real")) {
+    Micrographs micrographs(folder);
+    if (!vision_options.micrographs.empty()) micrographs.keepOnly(vision_options.micrographs);
+    if (!vision_options.contact_sheet.empty()) writeContactSheet(micrographs);
+    measureReal(micrographs, take);
+  }
+  summary.print();
+  return rows.text();
 }
 
 }  // namespace
@@ -98,13 +100,24 @@ std::string table() {
 
 int main(int argc, char** argv) {
   namespace po = boost::program_options;
+  microinjection::VisionOptions& options = microinjection::vision_options;
   po::options_description more;
-  more.add_options()("images", po::value(&microinjection::images)->default_value(40),
-                     "rendered images of each condition")("only", po::value(&microinjection::only),
-                                                          "one set: the name of a condition as in the table, or real")(
-      "seed", po::value(&microinjection::first_seed)->default_value(100001),
-      "of the first image; constants are chosen with seeds below 100000")(
-      "pipettes", po::bool_switch(&microinjection::pipettes_only), "rendered images: measures the pipettes only");
+  const auto add = [&](const char* name, const po::value_semantic* value, const char* description) {
+    more.add_options()(name, value, description);
+  };
+  add("images", po::value(&options.images)->default_value(options.images), "rendered images of each condition");
+  add("only", po::value(&options.only), "one set: the name of a condition as in the table, or real");
+  add("seed", po::value(&options.seed)->default_value(options.seed),
+      "of the first image; constants are chosen with seeds below 100000");
+  add("pipettes", po::bool_switch(&options.pipettes_only), "rendered images: measures the pipettes only");
+  add("transform", po::value(&options.transforms)->multitoken(),
+      "real images: under these transforms only, such as identity");
+  add("micrograph", po::value(&options.micrographs)->multitoken(),
+      "real images: those only whose file has one of these parts in its name, such as vampy/ or stack6.8");
+  add("told", po::bool_switch(&options.told),
+      "real images: look and directions of the pipettes are those of the image, not the default ones");
+  add("contact-sheet", po::value(&options.contact_sheet),
+      "PNG to write: the real images with what is found in them, told look and directions");
   return microinjection::benchMain(argc, argv,
                                    "bench_vision: errors of the vision on rendered images, and on real ones where "
                                    "MICROINJECTION_MICROGRAPHS names their folder.",

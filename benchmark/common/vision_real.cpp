@@ -1,186 +1,187 @@
+#include "benchmark/common/vision_real.h"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <fstream>
-#include <map>
-#include <opencv2/imgcodecs.hpp>
-#include <sstream>
+#include <optional>
 
 #include "base/cpu_time.h"
-#include "benchmark/common/vision_row.h"
-#include "vision/calibration/tip_focus.h"
-#include "vision/detection/cell_detector.h"
-#include "vision/detection/pipette_detector.h"
-#include "vision/detection/tip_sharpness.h"
+#include "benchmark/common/stated_interval.h"
 
 namespace microinjection {
 namespace {
 
-constexpr double kMarkedTip = 2, kVesicle = 1.5, kMarkedMouth = 3, kFocus = 1, kScale = 5.38;
-constexpr double kOutline = 0.02;  // of the diameter
+constexpr double kDiameterLimit = 0.02, kCentreLimit = 0.01, kZonaLimit = 0.03;  // of the diameter
+constexpr double kPlaceLimit = 3;  // px of the image as it was taken, and at least twice the reading's tolerance
+const cv::Size kTimedFrame(1392, 1040);
 
-/// A line of GROUND_TRUTH.csv.
-struct Reading {
-  std::string file, object;
-  double x = 0, y = 0, dx = 0, dy = 0;
+/// A measured value beside its truth.
+struct Comparison {
+  Finding finding;
+  double error = 0, limit = 0, deviation = 0, truth = 0;
+  bool covered = false;
 };
 
-std::vector<Reading> readings(const std::string& folder) {
-  std::vector<Reading> all;
-  std::ifstream file(folder + "/GROUND_TRUTH.csv");
-  for (std::string line; std::getline(file, line);) {
-    if (line.empty() || line[0] == '#' || line.rfind("file,", 0) == 0) continue;
-    std::istringstream text(line);
-    std::vector<std::string> cells;
-    for (std::string part; std::getline(text, part, ',');) cells.push_back(part);
-    if (cells.size() < 6) continue;
-    all.push_back({cells[0], cells[1], std::atof(cells[2].c_str()), std::atof(cells[3].c_str()),
-                   std::atof(cells[4].c_str()), std::atof(cells[5].c_str())});
-  }
-  return all;
-}
-
-/// Every second file of a source, by the order of the readings. See realRows() for what that means.
-class Halves {
+/// The rows of one image.
+class RealImageRows {
  public:
-  std::string setOf(const std::string& file) {
-    const std::string source = file.substr(0, file.find('/'));
-    auto& files = seen_[source];
-    const auto known = files.insert({file, static_cast<int>(files.size())}).first;
-    return known->second % 2 == 0 ? "real_tune" : "real_held";
+  RealImageRows(const std::string& set, const std::string& image, const TakeRow& take)
+      : set_(set), image_(image), take_(take) {}
+
+  void add(const std::string& what, const std::string& group, const Comparison& comparison) const {
+    VisionRow row = rowFor(what, group, comparison.finding);
+    row.right = row.sure && comparison.error <= comparison.limit;
+    row.wrong = row.sure && !*row.right;
+    if (row.found) {
+      row.error = comparison.error;
+      if (comparison.truth > 0) row.relative = comparison.error / comparison.truth;
+      row.deviation = comparison.deviation;
+      row.covered = comparison.covered;
+    }
+    take_(row);
+  }
+  /// Of something that is not in the image.
+  void addAbsent(const std::string& what, const Finding& finding) const {
+    VisionRow row = rowFor(what + "_absent", "absent", finding);
+    row.wrong = row.sure;
+    take_(row);
+  }
+  /// Of something that is there, and was not read.
+  void addUnread(const std::string& what, const Finding& finding) const {
+    take_(rowFor(what + "_unread", "unread", finding));
+  }
+  void addTime(const std::string& what, double time) const {
+    VisionRow row{set_, image_, what};
+    row.time = time;
+    take_(row);
   }
 
  private:
-  std::map<std::string, std::map<std::string, int>> seen_;
+  VisionRow rowFor(const std::string& what, const std::string& group, const Finding& finding) const {
+    VisionRow row{set_, image_, what};
+    row.group = group;
+    row.found = finding.hasValues();
+    row.sure = finding.isFound();
+    row.verdict = nameOf(finding.verdict);
+    return row;
+  }
+
+  std::string set_, image_;
+  const TakeRow& take_;
 };
 
-double directionOf(const std::string& file) {
-  if (file.rfind("autopatcher", 0) == 0) return 160 * M_PI / 180;
-  return file == "vampy/test.png" ? M_PI : 0;
+const ImageMark* markOf(const MarkedImage& image, const std::string& thing) {
+  for (const ImageMark& mark : image.marks)
+    if (mark.thing == thing && mark.in_frame) return &mark;
+  return nullptr;
 }
 
-VisionRow judged(const std::string& set, const Reading& reading, const Finding& finding, double error, double goal,
-                 double time) {
-  VisionRow row{set, reading.file, reading.object};
-  row.found = finding.hasValues();
-  row.sure = finding.isFound();
-  row.verdict = nameOf(finding.verdict);
-  row.time = time;
-  if (!row.found) return row;
-  row.error = error;
-  row.wrong = row.sure && error > kWrongFactor * goal;
-  return row;
+Comparison comparedPlace(const Finding& finding, const cv::Point2d& place, const Eigen::Matrix2d& covariance,
+                         const ImageMark& mark, double limit) {
+  const cv::Point2d off = place - mark.place;
+  return {finding,       std::hypot(off.x, off.y),
+          limit,         deviationOf(covariance),
+          mark.diameter, covers(off, covariance, mark.tolerance)};
 }
 
-VisionRow pipetteRow(const std::string& set, const Reading& reading, const cv::Mat& image) {
-  PipetteDetectorConfig config;
-  config.kind = reading.object == "pipette_tip" ? "injection" : "holding";
-  config.direction = directionOf(reading.file);
-  const double begin = threadCpuTime();
-  const PipetteDetection found = PipetteDetector(config).detect(Frame(image));
-  return judged(set, reading, found.finding, std::hypot(found.end.x - reading.x, found.end.y - reading.y),
-                config.kind == "holding" ? kMarkedMouth : kMarkedTip, threadCpuTime() - begin);
+Comparison comparedDiameter(const Finding& finding, const CellBorder& border, const ImageMark& mark, double share) {
+  if (!finding.hasValues()) return {finding};
+  const double error = border.ellipse.meanDiameter() - mark.diameter, deviation = diameterDeviation(border);
+  return {finding,   std::abs(error), share * mark.diameter + mark.tolerance,
+          deviation, mark.diameter,   covers(error, deviation, mark.tolerance)};
 }
 
-VisionRow cellRow(const std::string& set, const Reading& reading, cv::Mat image) {
-  // The lower half of this source's images is its own segmentation, drawn.
-  if (reading.file.rfind("usama", 0) == 0) image = image.rowRange(0, image.rows / 2);
-  CellDetectorConfig config;
-  config.largest_diameter = 500;
-  const double begin = threadCpuTime();
-  const CellDetection cell = CellDetector(config).detect(Frame(image));
-  const double time = threadCpuTime() - begin, diameter = std::sqrt(reading.dx * reading.dy);
-  const CellBorder& border = reading.object == "zona_outer"   ? cell.zona_outer
-                             : reading.object == "zona_inner" ? cell.zona_inner
-                                                              : cell.ooplasm;
+void borderRow(const RealImageRows& rows, const MarkedImage& image, const std::string& thing, const CellDetection& cell,
+               const CellBorder& border, double share) {
+  const ImageMark* mark = markOf(image, thing);
+  if (mark == nullptr) return;
   const Finding finding = cell.finding.hasValues() ? border.finding : cell.finding;
-  const double error = std::abs(border.ellipse.meanDiameter() - diameter);
-  const bool vesicle = reading.object == "vesicle_inner_edge";
-  VisionRow row = judged(set, reading, finding, error, vesicle ? kVesicle : kOutline * diameter, time);
-  if (row.found) row.relative = error / diameter;
-  return row;
+  rows.add(thing, "readable", comparedDiameter(finding, border, *mark, share));
 }
 
-/// The median of each coordinate.
-cv::Point2d middleOf(const std::vector<cv::Point2d>& points) {
-  std::vector<double> x, y;
-  for (const cv::Point2d& point : points) {
-    x.push_back(point.x);
-    y.push_back(point.y);
+void realCellRows(const RealImageRows& rows, const MarkedImage& image, const CellDetection& cell) {
+  if (!image.has_cell) {
+    rows.addAbsent("cell", cell.finding);
+    return;
   }
-  return {medianOf(x), medianOf(y)};
+  const ImageMark* vesicle = markOf(image, "vesicle");
+  const ImageMark* outer = vesicle != nullptr ? vesicle : markOf(image, "zona_outer");
+  if (outer == nullptr) {
+    rows.addUnread("cell", cell.finding);
+    return;
+  }
+  rows.add("cell_centre", "readable",
+           comparedPlace(cell.finding, cell.centre, cell.centre_covariance, *outer,
+                         kCentreLimit * outer->diameter + outer->tolerance));
+  rows.add("cell_diameter", "readable", comparedDiameter(cell.size, cell.outer(), *outer, kDiameterLimit));
+  if (vesicle != nullptr) rows.addAbsent("zona", cell.finding.hasValues() ? cell.zona_outer.finding : cell.finding);
+  borderRow(rows, image, "zona_outer", cell, cell.zona_outer, kZonaLimit);
+  borderRow(rows, image, "zona_inner", cell, cell.zona_inner, kZonaLimit);
+  borderRow(rows, image, "ooplasm", cell, cell.ooplasm, kDiameterLimit);
 }
 
-/// Tips of the stages' stacks in every plane, and the best plane, from those images alone.
-void stackRows(const std::string& folder, const std::vector<Reading>& all, const TakeRow& take) {
-  PipetteDetectorConfig config;
-  config.direction = 0;
-  const PipetteDetector detector(config);
-  std::map<int, cv::Point2d> tips;
-  for (const int stage : {0, 3, 6}) {
-    const std::string set = stage == 3 ? "real_held" : "real_tune", stack = "holypipette/stack" + std::to_string(stage);
-    std::vector<FocusSample> planes;
-    std::vector<Frame> frames;
-    std::vector<cv::Point2d> ends;
-    for (int plane = 0; plane <= 16; ++plane) {
-      const std::string name = stack + "." + std::to_string(plane) + ".jpg";
-      const Frame frame(cv::imread(folder + "/" + name, cv::IMREAD_UNCHANGED));
-      const PipetteDetection found = detector.detect(frame);
-      frames.push_back(frame);
-      if (found.finding.isFound()) ends.push_back(found.end);
-      if (plane == 8) tips[stage] = found.end;
-      for (const Reading& reading : all) {
-        if (reading.file != stack + ".8.jpg" || std::abs(plane - 8) > 5) continue;
-        const double error = std::hypot(found.end.x - reading.x, found.end.y - reading.y);
-        take(judged(set, {name, "tip_in_plane_" + std::to_string(plane)}, found.finding, error, 5, std::nan("")));
-      }
-    }
-    // The stage stands still: one window for all planes, which are 1 um apart.
-    for (std::size_t plane = 0; plane < frames.size() && !ends.empty(); ++plane)
-      planes.push_back(
-          {1e-6 * static_cast<double>(plane), tipSharpness(frames[plane], middleOf(ends), config.direction)});
-    const FocusReport best = findFocus(planes, {});
-    const Finding finding = best.verdict == FocusVerdict::kFocus    ? Finding::found()
-                            : best.verdict == FocusVerdict::kUnsure ? Finding::uncertain(best.text)
-                                                                    : Finding::notFound(best.text);
-    take(judged(set, {stack, "best_plane"}, finding, std::abs(1e6 * best.height - 8.5), kFocus, std::nan("")));
+void realPipetteRow(const RealImageRows& rows, const MarkedImage& image, const std::string& what, bool present,
+                    const PipetteDetection& found) {
+  if (!present) {
+    rows.addAbsent(what, found.finding);
+    return;
   }
-  const double scale = cv::norm(tips[0] - tips[6]) / 60;
-  VisionRow row = judged("real_tune", {"holypipette", "stage_scale"}, Finding::found(), std::abs(scale - kScale),
-                         0.005 * kScale, std::nan(""));
-  row.relative = std::abs(scale - kScale) / kScale;
-  take(row);
+  const ImageMark* mark = markOf(image, what);
+  if (mark == nullptr) return;
+  const double limit = std::max(2 * mark->tolerance, kPlaceLimit * image.scale);
+  rows.add(mark->readable ? what : what + "_far", mark->readable ? "readable" : "far",
+           comparedPlace(found.finding, found.end, found.covariance, *mark, limit));
 }
 
-void emptyRows(const std::string& folder, const TakeRow& take) {
-  CellDetectorConfig config;
-  config.largest_diameter = 500;
-  for (const int well : {1, 2, 7, 8}) {
-    const std::string name = "autooocyte/finalOocyte_1_Oocyte_" + std::to_string(well) + ".jpg";
-    const CellDetection cell =
-        CellDetector(config).detect(Frame(cv::imread(folder + "/" + name, cv::IMREAD_UNCHANGED)));
-    VisionRow row{well % 2 == 1 ? "real_tune" : "real_held", name, "empty_well"};
-    row.found = cell.finding.hasValues();
-    row.sure = cell.finding.isFound();
-    row.wrong = row.sure;
-    row.verdict = nameOf(cell.finding.verdict);
-    take(row);
-  }
+bool isComplete(const SpecimenView& view) {
+  return view.cell.finding.hasValues() && view.injection.finding.hasValues() && view.holding.finding.hasValues();
+}
+
+/// Of a frame that is searched, and of the same frame that is then tracked.
+void timeRows(const RealImageRows& rows, const MarkedImage& image, SpecimenTracker& tracker, double first) {
+  if (image.image.size() != kTimedFrame) return;
+  rows.addTime(isComplete(tracker.view()) ? "first_frame" : "first_frame_missing", first);
+  const bool complete = isComplete(tracker.view());
+  const double begin = threadCpuTime();
+  tracker.next(Frame(image.image));
+  rows.addTime(complete ? "tracked_frame" : "tracked_frame_missing", threadCpuTime() - begin);
+}
+
+void imageRows(const std::string& set, const MarkedImage& image, RealSetup setup, bool timed, const TakeRow& take) {
+  const RealImageRows rows(set, image.name, take);
+  SpecimenTracker tracker(trackerConfig(image, setup));
+  const double begin = threadCpuTime();
+  const SpecimenView view = tracker.next(Frame(image.image));
+  const double time = threadCpuTime() - begin;
+  realCellRows(rows, image, view.cell);
+  realPipetteRow(rows, image, "tip", image.has_needle, view.injection);
+  realPipetteRow(rows, image, "mouth", image.has_holding, view.holding);
+  if (timed) timeRows(rows, image, tracker, time);
 }
 
 }  // namespace
 
-void realRows(const TakeRow& take) {
-  const char* folder = std::getenv("MICROINJECTION_MICROGRAPHS");
-  if (folder == nullptr) return;
-  const std::vector<Reading> all = readings(folder);
-  Halves halves;
-  for (const Reading& reading : all) {
-    const cv::Mat image = cv::imread(std::string(folder) + "/" + reading.file, cv::IMREAD_UNCHANGED);
-    const std::string set = halves.setOf(reading.file);
-    take(reading.object.rfind("pipette", 0) == 0 ? pipetteRow(set, reading, image) : cellRow(set, reading, image));
+SpecimenTrackerConfig trackerConfig(const MarkedImage& image, RealSetup setup) {
+  ConfigReader nothing(YAML::Node(YAML::NodeType::Map), "");
+  SpecimenTrackerConfig config = SpecimenTrackerConfig::read(nothing);
+  if (setup == RealSetup::kDefault) return config;
+  config.cell.look = image.look;
+  config.injection.direction = image.needle;
+  config.holding.direction = image.holding;
+  return config;
+}
+
+void realRows(const Micrographs& micrographs, const std::vector<ImageTransform>& transforms, RealSetup setup,
+              const TakeRow& take) {
+  cv::setNumThreads(1);
+  for (const std::string& name : micrographs.names()) {
+    const MarkedImage original = micrographs.load(name);
+    for (const ImageTransform& each : transforms) {
+      const std::string set = (setup == RealSetup::kTold ? "told/" : "real/") + each.name;
+      imageRows(set, each.apply(original), setup, each.name == "identity", take);
+    }
   }
-  stackRows(folder, all, take);
-  emptyRows(folder, take);
 }
 
 }  // namespace microinjection

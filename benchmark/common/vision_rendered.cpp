@@ -1,7 +1,10 @@
+#include <yaml-cpp/yaml.h>
+
 #include <cmath>
 #include <opencv2/core.hpp>
 
 #include "base/cpu_time.h"
+#include "benchmark/common/stated_interval.h"
 #include "benchmark/common/vision_cases.h"
 #include "vision/detection/cell_detector.h"
 #include "vision/detection/pipette_detector.h"
@@ -14,7 +17,8 @@ namespace {
 // The goals, px and degrees.
 constexpr double kCentre = 0.15, kZona = 0.5, kTip = 0.2, kMouth = 0.5, kAxis = 0.2, kDimple = 0.3, kPolarBody = 2;
 constexpr double kDiameter = 0.003;  // of the diameter
-const cv::Point2d kMoved(4, -3);     // px, that a pipette is thought to be off before it is tracked
+constexpr double kInDegrees = 180 / M_PI;
+const cv::Point2d kMoved(4, -3);  // px, that a pipette is thought to be off before it is tracked
 
 template <typename Call>
 auto timed(double& seconds, const Call& call) {
@@ -24,38 +28,60 @@ auto timed(double& seconds, const Call& call) {
   return result;
 }
 
+/// An error with what the detector states of it.
+struct StatedError {
+  double error = 0;      ///< absolute
+  double deviation = 0;  ///< standard deviation
+  bool covered = false;  ///< see VisionRow
+};
+
+StatedError stated(double error, double deviation) { return {std::abs(error), deviation, covers(error, deviation)}; }
+
+StatedError stated(const cv::Point2d& place, const Eigen::Vector2d& truth, const Eigen::Matrix2d& covariance) {
+  const cv::Point2d off(place.x - truth.x(), place.y - truth.y());
+  return {std::hypot(off.x, off.y), deviationOf(covariance), covers(off, covariance)};
+}
+
 /// The rows of one rendered image.
 class ImageRows {
  public:
   ImageRows(const std::string& set, std::uint64_t seed, const TakeRow& take)
       : set_(set), image_(std::to_string(seed)), take_(take) {}
 
-  void add(const std::string& what, const Finding& finding, double error, double truth, double goal,
+  void add(const std::string& what, const Finding& finding, const StatedError& stated, double truth, double goal,
            double time = std::numeric_limits<double>::quiet_NaN()) const {
-    VisionRow row{set_, image_, what};
-    row.found = finding.hasValues();
-    row.sure = finding.isFound();
-    row.verdict = nameOf(finding.verdict);
-    row.time = time;
+    VisionRow row = rowFor(what, finding, time);
     if (row.found) {
-      row.error = error;
-      row.relative = truth > 0 ? error / truth : std::numeric_limits<double>::quiet_NaN();
-      row.wrong = row.sure && error > kWrongFactor * goal;
+      row.error = stated.error;
+      row.relative = truth > 0 ? stated.error / truth : std::numeric_limits<double>::quiet_NaN();
+      row.deviation = stated.deviation;
+      row.covered = stated.covered;
+      row.wrong = row.sure && stated.error > kWrongFactor * goal;
     }
     take_(row);
   }
   /// Of something that is not in the image: found is wrong.
   void addAbsent(const std::string& what, const Finding& finding, double time) const {
-    VisionRow row{set_, image_, what};
-    row.found = finding.hasValues();
-    row.sure = finding.isFound();
+    VisionRow row = rowFor(what, finding, time);
     row.wrong = row.sure;
-    row.verdict = nameOf(finding.verdict);
+    take_(row);
+  }
+  void addTime(const std::string& what, double time) const {
+    VisionRow row{set_, image_, what};
     row.time = time;
     take_(row);
   }
 
  private:
+  VisionRow rowFor(const std::string& what, const Finding& finding, double time) const {
+    VisionRow row{set_, image_, what};
+    row.found = finding.hasValues();
+    row.sure = finding.isFound();
+    row.verdict = nameOf(finding.verdict);
+    row.time = time;
+    return row;
+  }
+
   std::string set_, image_;
   const TakeRow& take_;
 };
@@ -63,17 +89,23 @@ class ImageRows {
 double meanDiameter(const Eigen::Vector2d& semi_axes) { return 2 * std::sqrt(semi_axes[0] * semi_axes[1]); }
 
 void cellRows(const ImageRows& rows, const CellDetection& cell, const CellTruth& truth, double time) {
-  const double off = std::hypot(cell.centre.x - truth.centre.x(), cell.centre.y - truth.centre.y());
-  rows.add("cell_centre", cell.finding, off, truth.diameter, kCentre, time);
-  const double diameter = cell.finding.hasValues() ? cell.outer().ellipse.meanDiameter() : 0;
-  rows.add("cell_diameter", cell.size, std::abs(diameter - truth.diameter), truth.diameter, kDiameter * truth.diameter);
+  rows.add("cell_centre", cell.finding, stated(cell.centre, truth.centre, cell.centre_covariance), truth.diameter,
+           kCentre, time);
+  StatedError diameter;
+  if (cell.finding.hasValues())
+    diameter = stated(cell.outer().ellipse.meanDiameter() - truth.diameter, diameterDeviation(cell.outer()));
+  rows.add("cell_diameter", cell.size, diameter, truth.diameter, kDiameter * truth.diameter);
   if (!(truth.zona_inner[0] > 0)) return;
   const double inner = meanDiameter(truth.zona_inner), ooplasm = meanDiameter(truth.ooplasm);
-  rows.add("zona_outer", cell.zona_outer.finding,
-           0.5 * std::abs(cell.zona_outer.ellipse.meanDiameter() - truth.diameter), 0, kZona);
-  rows.add("zona_inner", cell.zona_inner.finding, 0.5 * std::abs(cell.zona_inner.ellipse.meanDiameter() - inner), 0,
-           kZona);
-  rows.add("ooplasm", cell.ooplasm.finding, 0.5 * std::abs(cell.ooplasm.ellipse.meanDiameter() - ooplasm), 0, kZona);
+  const auto add = [&](const std::string& what, const CellBorder& border, double expected) {
+    const StatedError radius = border.finding.hasValues() ? stated(0.5 * (border.ellipse.meanDiameter() - expected),
+                                                                   0.5 * diameterDeviation(border))
+                                                          : StatedError{};
+    rows.add(what, border.finding, radius, 0, kZona);
+  };
+  add("zona_outer", cell.zona_outer, truth.diameter);
+  add("zona_inner", cell.zona_inner, inner);
+  add("ooplasm", cell.ooplasm, ooplasm);
 }
 
 /// The angle in degrees; where the cell has no polar body, whether one is claimed.
@@ -83,7 +115,7 @@ void polarBodyRow(const ImageRows& rows, const PolarBody& body, const CellTruth&
     return;
   }
   const double turn = std::remainder(body.angle - *truth.polar_body_angle, 2 * M_PI);
-  rows.add("polar_body_angle", body.finding, std::abs(turn) * 180 / M_PI, 0, kPolarBody);
+  rows.add("polar_body_angle", body.finding, stated(turn * kInDegrees, body.deviation * kInDegrees), 0, kPolarBody);
 }
 
 PipetteDetection pipetteRows(const ImageRows& rows, const std::string& what, const Frame& frame, const CameraView& view,
@@ -97,16 +129,14 @@ PipetteDetection pipetteRows(const ImageRows& rows, const std::string& what, con
   const PipetteDetection found = timed(time, [&] { return detector.detect(frame); });
   if (!truth) rows.addAbsent(what, found.finding, time);
   if (!truth || !frame.contains({truth->end.x(), truth->end.y()}, 8)) return found;
-  const double off = std::hypot(found.end.x - truth->end.x(), found.end.y - truth->end.y());
-  rows.add(what, found.finding, off, 0, goal, time);
+  rows.add(what, found.finding, stated(found.end, truth->end, found.covariance), 0, goal, time);
   const double turn = std::remainder(found.direction - std::atan2(truth->axis.y(), truth->axis.x()), 2 * M_PI);
-  rows.add(what + "_axis", found.finding, std::abs(turn) * 180 / M_PI, 0, kAxis);
+  rows.add(what + "_axis", found.finding, stated(turn * kInDegrees, found.direction_deviation * kInDegrees), 0, kAxis);
   if (!found.finding.hasValues()) return found;
   PipetteDetection before = found;
   before.end += kMoved;
   const PipetteDetection again = timed(following, [&] { return detector.track(frame, before, 8); });
-  rows.add(what + "_tracked", again.finding, std::hypot(again.end.x - truth->end.x(), again.end.y - truth->end.y()), 0,
-           goal, following);
+  rows.add(what + "_tracked", again.finding, stated(again.end, truth->end, again.covariance), 0, goal, following);
   return found;
 }
 
@@ -147,13 +177,36 @@ void seenRows(const ImageRows& rows, const SeenCell& seen, const SceneTruth& tru
   polarBodyRow(rows, cell.polar_body, *truth.cell);
   if (!cell.finding.hasValues()) return;
   const CellDetection& again = seen.tracked.cell;
-  const Eigen::Vector2d& centre = truth.cell->centre;
-  rows.add("cell_tracked", again.finding, std::hypot(again.centre.x - centre.x(), again.centre.y - centre.y()), 0,
-           kCentre, reading + seen.following);
+  rows.add("cell_tracked", again.finding, stated(again.centre, truth.cell->centre, again.centre_covariance), 0, kCentre,
+           reading + seen.following);
   if (!truth.cell->dimple_depth) return;
   const double depth = *truth.cell->dimple_depth;
   const Dimple& found = seen.found.indentation;
-  rows.add("dimple_depth", found.finding, std::abs(found.depth - depth), depth, kDimple, seen.indentation);
+  rows.add("dimple_depth", found.finding, stated(found.depth - depth, found.deviation), depth, kDimple,
+           seen.indentation);
+}
+
+/// Times of whole frames, as the node vision has them: of the first one, which is searched, and of the same one again,
+/// in which what was found is tracked. With `_missing` where cell, tip or mouth was not found.
+void frameTimeRows(const ImageRows& rows, const CellDetectorConfig& cell, const CameraView& view,
+                   const cv::Mat& image) {
+  ConfigReader nothing(YAML::Node(YAML::NodeType::Map), "");
+  SpecimenTrackerConfig config = SpecimenTrackerConfig::read(nothing);
+  config.cell = cell;
+  const auto direction = [&](double y) {
+    const Eigen::Vector2d shaft = view.imageDirection({0, y});
+    return std::atan2(shaft.y(), shaft.x());
+  };
+  config.injection.direction = direction(1);
+  config.holding.direction = direction(-1);
+  SpecimenTracker tracker(config);
+  double first = 0, tracked = 0;
+  const SpecimenView seen = timed(first, [&] { return tracker.next(Frame(image)); });
+  timed(tracked, [&] { return tracker.next(Frame(image)); });
+  const bool complete =
+      seen.cell.finding.hasValues() && seen.injection.finding.hasValues() && seen.holding.finding.hasValues();
+  rows.addTime(complete ? "first_frame" : "first_frame_missing", first);
+  rows.addTime(complete ? "tracked_frame" : "tracked_frame_missing", tracked);
 }
 
 }  // namespace
@@ -182,6 +235,7 @@ void renderedRows(const VisionCondition& condition, std::uint64_t first, int ima
     if (pipettes_only) continue;
     addNeedle(frame, needle, seen);
     seenRows(rows, seen, drawn.truth, reading);
+    frameTimeRows(rows, config, view, image);
   }
 }
 

@@ -99,6 +99,19 @@ void printLengths(const CellMeasurement& cell, const CellPlane& plane) {
     std::cout << "not known: " << verdictOf(body.finding) << '\n';
 }
 
+/// What an uncertain cell has: numbers without intervals, since nobody knows by how much they are off.
+void printUncertain(const CellDetection& cell, double pixel_size) {
+  if (!cell.size.hasValues()) return;
+  const auto print = [&](const char* name, double length) {
+    std::cout << name << ": about " << 1e6 * pixel_size * length << " um\n";
+  };
+  print("diameter", cell.outer().ellipse.meanDiameter());
+  const bool zona = cell.zona_outer.finding.hasValues() && cell.zona_inner.finding.hasValues();
+  const Ellipse &outer = cell.zona_outer.ellipse, &inner = cell.zona_inner.ellipse;
+  if (zona) print("zona", 0.5 * (outer.meanDiameter() - inner.meanDiameter()));
+  std::cout << "centre: " << cell.centre.x << ", " << cell.centre.y << " px\n";
+}
+
 /// The scene of --scene with the measured lengths.
 YAML::Node sceneOf(const MeasureCellArguments& arguments, const CellMeasurement& cell) {
   const YAML::Node base = loadYamlMap(arguments.scene);
@@ -127,6 +140,7 @@ int run(int argc, char** argv) {
   std::string reason;
   const std::optional<CellMeasurement> cell = readings.measure(1, pixel_size, reason);
   if (!cell) {
+    printUncertain(plane.view.cell, pixel_size);
     flushStandardOutput();
     return kNotFound;
   }

@@ -22,7 +22,8 @@ measured in which the cell is the sharpest: a stack of planes needs no choice. A
 It prints, a line each:
   image      name of the measured image, its number, and in how many images the cell was measured
   verdict    found, uncertain or not found, with the reason
-  diameter, zona, offset    with half widths of 95 % intervals, which leave out the error of the pixel size
+  diameter, zona, offset    with half widths of 95 % intervals, which leave out the error of the pixel size;
+             of an uncertain cell what was seen of diameter, zona and centre, without intervals
   polar body its direction from the cell's centre, from the image's x towards y (down), if it is sure
   family     with --scene and --families: the family that serves this cell without preparation, with the expected error
 offset: of the cell's centre from the axis of the holding pipette, positive to the right, seen from shaft to mouth.

@@ -187,12 +187,15 @@ std::string VisionNode::familyOf(const CellMeasurement& cell) const {
   if (parameters_.scene.empty()) return "not known: this node has no scene";
   const YAML::Node scene = loadYamlMap(parameters_.scene);
   if (cell.zona_thickness && layersOf(scene) != 2) return "in no family: the image shows a zona, the scene has none";
+  if (!cell.zona_thickness && layersOf(scene) == 2) return "in no family: the scene has a zona, the image shows none";
   return describeFamilyOf(parseScene(withMeasuredSize(scene, cell), parameters_.scene), parameters_.families);
 }
 
 std::string VisionNode::serve(const CellMeasurement& cell) {
+  const bool known = !parameters_.scene.empty();
+  if (known) requireSeenZona(loadYamlMap(parameters_.scene), cell);
   if (!cell.zona_thickness) return served_.change({"diameter"}, {cell.diameter.value});
-  if (!parameters_.scene.empty() && layersOf(loadYamlMap(parameters_.scene)) != 2)
+  if (known && layersOf(loadYamlMap(parameters_.scene)) != 2)
     throw ConfigError("the image shows a zona, and the served cell has none: start with a scene of two layers");
   return served_.change({"diameter", "shell_thickness"}, {cell.diameter.value, cell.zona_thickness->value});
 }

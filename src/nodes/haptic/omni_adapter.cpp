@@ -40,7 +40,8 @@ OmniAdapter::OmniAdapter(Cycle& cycle, const OmniConfig& config)
 
 std::optional<HandReading> OmniAdapter::read(const Cycle::Tick& tick) {
   const OmniState* state = state_.get(tick.now);
-  const std::string rivals = button_senders_.rivals(tick.now, buttons_.publishers() > 1);
+  const std::string rivals =
+      button_senders_.hasOther() ? button_senders_.rivals(tick.now, buttons_.publishers() > 1) : "";
   rivals_ = rivals.empty() ? "" : config_.device + "/button is sent by two nodes, " + rivals;
   if (!state || !rivals.empty()) {
     operator_present_ = false;

@@ -17,12 +17,21 @@ InjectorLink::InjectorLink(Cycle& cycle, double timeout)
 std::optional<InjectorReport> InjectorLink::report(const ros::Time& now) {
   const auto* state = state_.get(now);
   if (!state || !state->fault.empty() || !std::isfinite(state->volume)) return std::nullopt;
+  readRefusal(state->refusal);
   if (pending_ != 0) {
     const bool over = state->last_id == pending_ || (begun_ && !state->busy);
     begun_ = begun_ || state->busy;
     if (over) pending_ = 0;
   }
-  return InjectorReport{state->busy || pending_ != 0, state->volume, state->last_id == message_.id};
+  return InjectorReport{state->busy || pending_ != 0, state->volume, state->last_id == message_.id, refusal_};
+}
+
+/// The injector tells why its last command was refused: "pulse 5 refused: ...". Other commands may follow.
+void InjectorLink::readRefusal(const std::string& refusal) {
+  const std::string begin = "pulse " + std::to_string(message_.id) + " refused: ";
+  if (pending_ == 0 || refusal.compare(0, begin.size(), begin) != 0) return;
+  refusal_ = refusal.substr(begin.size());
+  pending_ = 0;
 }
 
 void InjectorLink::setPulse(const std::optional<PulseGoal>& pulse, const ros::Time& now) {
@@ -34,6 +43,7 @@ void InjectorLink::setPulse(const std::optional<PulseGoal>& pulse, const ros::Ti
     message_.held = true;
     pulse_.publish(message_);
     begun_ = false;
+    refusal_.clear();
   }
   if (pulse && pending_ != 0 && isDue(message_.header.stamp, now, kRepetition)) {
     message_.header.stamp = now;

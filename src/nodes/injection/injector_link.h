@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "cell_microinjection/InjectionPulse.h"
 #include "cell_microinjection/InjectorState.h"
@@ -23,13 +24,15 @@ class InjectorLink {
   InjectorLink(Cycle& cycle, double timeout);
 
   /// The injector's state; empty when it is invalid or in FAULT. A pulse counts as under way from
-  /// its message until its end, however short it is.
+  /// its message until its end, however short it is, or until it is refused.
   std::optional<InjectorReport> report(const ros::Time& now);
 
   /// Call once a step, after report(), with the present pulse; empty: none.
   void setPulse(const std::optional<PulseGoal>& pulse, const ros::Time& now);
 
  private:
+  void readRefusal(const std::string& refusal);
+
   Input<cell_microinjection::InjectorState>& state_;
   Output<cell_microinjection::InjectionPulse>& pulse_;
   Output<cell_microinjection::StringStamped>& stop_;
@@ -37,6 +40,7 @@ class InjectorLink {
   cell_microinjection::InjectionPulse message_;  ///< the last one published
   std::uint64_t pending_ = 0;                    ///< id of the pulse under way; 0: none
   bool begun_ = false;                           ///< the injector has reported busy for it
+  std::string refusal_;                          ///< of the last pulse; empty: it was not refused
 };
 
 }  // namespace microinjection

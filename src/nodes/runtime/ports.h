@@ -43,8 +43,9 @@ class InputPort {
   }
   /// The two nodes that both send now, of which nobody can know which one is right; empty: one does.
   std::string rivals(const ros::Time& now) const {
+    if (!one_sender || !senders.hasOther()) return "";
     const bool has_changes_only = std::isinf(timeout);
-    return one_sender ? senders.rivals(now, has_changes_only && subscription.publishers() > 1) : "";
+    return senders.rivals(now, has_changes_only && subscription.publishers() > 1);
   }
 
   const std::string topic;

@@ -17,9 +17,10 @@ struct PulseGoal {
 
 /// State of the injector.
 struct InjectorReport {
-  bool busy = false;  ///< a pulse is under way
-  double volume = 0;  ///< m^3, delivered since it was reset
-  bool done = false;  ///< the last requested pulse ended and was not aborted
+  bool busy = false;      ///< a pulse is under way
+  double volume = 0;      ///< m^3, delivered since it was reset
+  bool done = false;      ///< the last requested pulse ended and was not aborted
+  std::string refusal{};  ///< why the last requested pulse does not begin; empty: it was not refused
 };
 
 /// Limits of any injection of a cell. A goal beyond them is refused, whatever the guards of the rig
@@ -58,7 +59,7 @@ enum class InjectionOutcome {
   kNoContact,        ///< no cell within the travel limit; withdrawn
   kNotPunctured,     ///< membrane intact at `depth`: held
   kInjectorTimeOut,  ///< the injector did not finish (withdrawn), or was stale (held)
-  kNotInjected,      ///< the pulse was aborted or delivered less than its volume; withdrawn
+  kNotInjected,      ///< the pulse was refused, aborted or delivered less than its volume; withdrawn
   kPreempted,        ///< by command; withdrawn
   kGuard,            ///< a guard stopped the needle: held, see InjectionResult::reason
   kFault,            ///< the rig is in FAULT

@@ -15,6 +15,7 @@ void InjectionController::monitorManualPulse(const Input& input, double dt) {
   const InjectorWait::Status status = hand_pulse_.step(input.injector, dt);
   if (status == InjectorWait::Status::kWaiting) return;
   if (status == InjectorWait::Status::kBroken) notice_ = "the injector ended the pulse too early";
+  if (status == InjectorWait::Status::kRefused) notice_ = "the injector refused the pulse: " + input.injector->refusal;
   if (status == InjectorWait::Status::kTimeOut) notice_ = "the injector does not report the end of the pulse";
   apply(InjectionEvent::kInjected);
 }

@@ -244,6 +244,10 @@ void InjectionRun::inject(const std::optional<InjectorReport>& injector, double 
     return beginWithdrawal(InjectionOutcome::kNotInjected, "the pulse was aborted or delivered less than its volume",
                            step);
   }
+  if (status == InjectorWait::Status::kRefused) {
+    return beginWithdrawal(InjectionOutcome::kNotInjected, "the injector refused the pulse: " + injector->refusal,
+                           step);
+  }
   if (status != InjectorWait::Status::kTimeOut) return;
   if (injector) return beginWithdrawal(InjectionOutcome::kInjectorTimeOut, "the injector has not finished", step);
   step.stop = InjectionOutcome::kInjectorTimeOut;

@@ -7,10 +7,10 @@
 namespace microinjection {
 
 /// Waits for the end of an injector's pulse: its time is over, or its volume delivered. A pulse
-/// that was aborted, or ended with less than its volume, is kBroken.
+/// that was aborted, or ended with less than its volume, is kBroken. One that the injector has refused never begins.
 class InjectorWait {
  public:
-  enum class Status { kWaiting, kOver, kBroken, kTimeOut };
+  enum class Status { kWaiting, kOver, kBroken, kRefused, kTimeOut };
 
   /// `timeout` (s): after the pulse's duration.
   void start(const PulseGoal& pulse, double timeout) {
@@ -25,6 +25,7 @@ class InjectorWait {
     if (report) {
       if (!before_) before_ = report->volume;
       volume_ = report->volume - *before_;
+      if (!report->refusal.empty()) return Status::kRefused;
       if (pulse_.volume > 0 && volume_ >= pulse_.volume) return Status::kOver;
       if (worked_ && !report->busy) return complete(*report) ? Status::kOver : Status::kBroken;
       worked_ = worked_ || report->busy;

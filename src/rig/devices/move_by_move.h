@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -103,6 +104,8 @@ class MoveByMove : public SerialManipulator {
   bool faultBesideTheLine(const Eigen::Vector3d& position, double margin);
   /// The position in a move may be extrapolated for `duration` (s) from now.
   void extrapolateFor(double duration) { extrapolated_until_ = time() + duration; }
+  /// The position in a move is not where it was extrapolated to, and unknown until the device rests.
+  void forgetPosition() { extrapolated_until_ = -std::numeric_limits<double>::infinity(); }
   void rest(const Eigen::Vector3d& position);
   bool isNewZero(const Eigen::Vector3d& position, double margin) const;
   bool detectNewOrigin(const Eigen::Vector3d& position, double outside, bool new_zero, double margin);

@@ -4,11 +4,13 @@
 #include <cctype>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace microinjection {
 namespace {
 
-constexpr int kSetupTries = 6;  // for a setup line, which needs two equal replies
+constexpr int kSetupTries = 6;    // for a setup line, which needs two equal replies
+constexpr int kSettingTries = 3;  // of a setting that the device acknowledges, and does not have
 constexpr std::size_t kLongestReply = 80;
 
 std::string printable(const std::string& text) {
@@ -39,8 +41,8 @@ PolledManipulator::PolledManipulator(const PolledManipulatorConfig& config, std:
 
 ManipulatorAbilities PolledManipulator::abilities() const {
   const double reading = dialect_.longest_reading * common_.byteTime() + answer_time_;
-  const double turn =
-      dialect_.longest_move * common_.byteTime() + 2 * answer_time_ + common_.segment_time + 2 * reading;
+  const double turn = dialect_.longest_move * common_.byteTime() + dialect_.move_replies * answer_time_ +
+                      common_.segment_time + 2 * reading;
   ManipulatorAbilities abilities = abilitiesWith(turn);
   abilities.device = dialect_.device;
   abilities.stop_time += dialect_.stop_duration;
@@ -56,7 +58,7 @@ double PolledManipulator::extrapolationTime() const {
 double PolledManipulator::recoveryTime() const {
   constexpr int kLineAndReply = 20, kReadings = 4;  // bytes of a setup line; readings until it rests
   int lines = 2;
-  for (int i = 0; !setup(i).empty(); ++i) lines += 2;
+  for (int i = 0; !setup(i).empty(); ++i) lines += isReadBack(i) ? 4 : 2;
   return common_.reply_timeout + dialect_.longest_move * common_.byteTime() + dialect_.stop_duration +
          lines * (kLineAndReply * common_.byteTime() + answer_time_) +
          kReadings * (dialect_.longest_reading * common_.byteTime() + answer_time_) + abilities().reading_interval;
@@ -74,7 +76,8 @@ void PolledManipulator::begin(bool lost) {
 
 /// The device may have lost its settings.
 void PolledManipulator::forgetSettings() {
-  setup_step_ = setup_tries_ = 0;
+  setup_step_ = setup_tries_ = setup_unset_ = 0;
+  setup_sent_ = false;
   setup_reply_.reset();
   setting_.clear();
 }
@@ -122,13 +125,19 @@ void PolledManipulator::handle(const std::string& reply) {
       if (!isKept(confirmed_, reply)) return handleLostSetting();
       check_setting_ = false;
       return;
+    case Kind::kReadBack:
+      return handleReadBack(reply);
     case Kind::kStop:
+    case Kind::kSetting:
     case Kind::kMove:
       if (!acknowledges(exchange_->line, reply)) return handleMalformedReply(reply);
       exchangeSucceeded();
       if (exchange_->kind == Kind::kStop) stop_requested_ = true;
-      if (exchange_->line == setting_) confirmed_ = setting_;
-      if (exchange_->kind == Kind::kMove && progress_.move.empty()) origin_monitor_.confirmMove();
+      if (exchange_->kind == Kind::kSetting) {
+        confirmed_ = exchange_->line;
+        progress_.setting_sent = true;
+      }
+      if (exchange_->kind == Kind::kMove) origin_monitor_.confirmMove();
       exchange_.reset();
   }
 }
@@ -142,8 +151,20 @@ void PolledManipulator::handleSetupReply(const std::string& reply) {
   if (!twice) return;
   setup_reply_.reset();
   setup_tries_ = 0;
-  const std::string line = setup(setup_step_), refusal = handleSetup(setup_step_++, reply);
-  if (!refusal.empty()) return raiseFault("answers \"" + printable(reply) + "\" to \"" + line + "\": " + refusal);
+  const std::string line = setup(setup_step_);
+  if (setup_sent_ && !isKept(line, reply)) {
+    setup_sent_ = false;
+    return handleUnset(line, reply, ++setup_unset_);
+  }
+  if (!setup_sent_) {
+    const std::string refusal = handleSetup(setup_step_, reply);
+    if (!refusal.empty()) return raiseFault("answers \"" + printable(reply) + "\" to \"" + line + "\": " + refusal);
+    setup_sent_ = isReadBack(setup_step_);
+    if (setup_sent_) return exchangeSucceeded();
+  }
+  setup_sent_ = false;
+  setup_unset_ = 0;
+  ++setup_step_;
   if (setup(setup_step_).empty()) confirmed_ = line;  // the requests before it set nothing
   exchangeSucceeded();
 }
@@ -153,6 +174,28 @@ void PolledManipulator::handleLostSetting() {
   if (++lost_setting_replies_ < 2) return;
   check_setting_ = false;
   settings_lost_ = true;
+}
+
+/// The setting of a move, which is not sent before. One reply without it may be damaged; after two the setting is sent
+/// again, since its line may have been.
+void PolledManipulator::handleReadBack(const std::string& reply) {
+  exchangeSucceeded();
+  exchange_.reset();
+  if (isKept(progress_.setting, reply)) {
+    setting_ = std::exchange(progress_.setting, "");
+    return;
+  }
+  if (++progress_.unset_replies < 2) return;
+  progress_.unset_replies = 0;
+  progress_.setting_sent = false;
+  handleUnset(progress_.setting, reply, ++progress_.setting_tries);
+}
+
+/// Handles a setting that the device has acknowledged, and does not have: it is sent again, a few times.
+void PolledManipulator::handleUnset(const std::string& setting, const std::string& reply, int tries) {
+  if (tries < kSettingTries) return;
+  raiseFault("it does not keep the setting \"" + setting + "\": it answers \"" + printable(reply) + "\" to \"" +
+             settingQuery(setting) + "\"; check cable and port, then enable");
 }
 
 void PolledManipulator::handleMotion(const std::string& reply) {
@@ -175,6 +218,7 @@ void PolledManipulator::handlePosition(const std::string& reply) {
   exchange_.reset();
   motion_requested_ = false;
   exchangeSucceeded();
+  if (isTooFar(*position)) return handleTooFast();
   updatePosition(*position);
 }
 
@@ -242,7 +286,9 @@ void PolledManipulator::request(Kind kind, const std::string& line) {
 
 void PolledManipulator::next() {
   if (check_setting_) return request(Kind::kSettingCheck, settingQuery(confirmed_));
-  if (const std::string line = setup(setup_step_); !line.empty()) return request(Kind::kSetup, line);
+  if (const std::string line = setup(setup_step_); !line.empty()) {
+    return request(Kind::kSetup, setup_sent_ ? settingQuery(line) : line);
+  }
   if (!stop_requested_) return request(Kind::kStop, dialect_.stop);
   if (!settled_ || filter_.isImplausible()) return request(Kind::kPosition, dialect_.position);
   if (move_) return nextOfMove();

@@ -26,6 +26,9 @@ struct PolledManipulatorConfig : MoveByMoveConfig {
 /// agree. A new position at rest, on an intact line, means a manual displacement if the device
 /// allows it. Then the settings are sent again, since the device may have been switched off and on
 /// before.
+///
+/// A device whose reading is further along the move than it can have come at the commanded speed was told another one
+/// by the line. It is stopped at once and goes on from where it rests; a second such move in a row is a fault.
 class PolledManipulator : public MoveByMove {
  public:
   struct Dialect {
@@ -39,9 +42,10 @@ class PolledManipulator : public MoveByMove {
     std::size_t longest_reading;   ///< bytes of a position request and its reply
     double stop_duration;          ///< s, to come to rest
     bool moved_by_hand;            ///< the operator may move it while this program controls it
+    int move_replies = 2;          ///< exchanges for a move, with its setting
   };
   struct Plan {
-    std::string setting;   ///< a line sent before, unless it was the last one; empty: none
+    std::string setting;   ///< a line sent and read back before, unless it is set already; empty: none
     std::string move;      ///< the line of the move; both are acknowledged
     double duration = 0;   ///< s, of the move
     double speed = 0;      ///< m/s, along the path; exceeds the requested one if the device cannot move that slowly
@@ -61,7 +65,9 @@ class PolledManipulator : public MoveByMove {
   virtual std::string handleSetup(int step, const std::string& reply) = 0;
   /// Counts of the device's axes; empty for a malformed line.
   virtual std::optional<Eigen::Vector3d> readPosition(const std::string& reply) = 0;
-  /// A request that shows after a failure whether `setting`, the last confirmed one, is still set.
+  /// Whether setup(step) sets what would stay wrong if the line has changed it: then it is read back.
+  virtual bool isReadBack(int /*step*/) const { return false; }
+  /// A request that shows whether `setting` is set: after it was sent, and after a failure.
   virtual std::string settingQuery(const std::string& setting) const = 0;
   virtual bool isKept(const std::string& setting, const std::string& reply) const = 0;
   virtual std::optional<bool> readMotion(const std::string& /*reply*/) const { return std::nullopt; }
@@ -80,7 +86,7 @@ class PolledManipulator : public MoveByMove {
   void exchange(const std::string& bytes) final;
 
  private:
-  enum class Kind { kSettingCheck, kSetup, kStop, kPosition, kMotion, kMove };
+  enum class Kind { kSettingCheck, kSetup, kStop, kPosition, kMotion, kSetting, kReadBack, kMove };
   struct Exchange {
     Kind kind;
     std::string line;
@@ -89,7 +95,13 @@ class PolledManipulator : public MoveByMove {
   };
   /// The move in progress.
   struct Progress {
-    std::string setting, move;            // lines that are still to be sent
+    std::string setting, move;            // lines that are still to be sent; of `setting`: to be read back
+    bool setting_sent = false;            // and acknowledged
+    int unset_replies = 0;                // successive replies without `setting`
+    int setting_tries = 0;                // in which it was not set
+    Eigen::Vector3d from{0, 0, 0};        // counts, where the move began
+    double sent = 0;                      // s, when its line was sent
+    double speed = 0;                     // m/s, along the move, as commanded
     double end = 0;                       // s, end of the move
     double overdue = 0;                   // s of activeTime(), latest arrival
     double next = 0;                      // s, earliest start of the next move, for a speed below the device's
@@ -105,6 +117,8 @@ class PolledManipulator : public MoveByMove {
   void handle(const std::string& reply);
   void handleSetupReply(const std::string& reply);
   void handleLostSetting();
+  void handleReadBack(const std::string& reply);
+  void handleUnset(const std::string& setting, const std::string& reply, int tries);
   void handleMotion(const std::string& reply);
   void handlePosition(const std::string& reply);
   void updatePosition(const Eigen::Vector3d& position);
@@ -112,18 +126,22 @@ class PolledManipulator : public MoveByMove {
   bool faultAstray(const Eigen::Vector3d& position);
   Eigen::Vector3d pointOnPath(const Eigen::Vector3d& from, double share) const;
   void checkMove(const Eigen::Vector3d& position);
+  bool isTooFar(const Eigen::Vector3d& position) const;
+  void handleTooFast();
   void handleMissedGoal(const Eigen::Vector3d& position);
   void handleMalformedReply(const std::string& reply);
   void forgetSettings();
   void request(Kind kind, const std::string& line);
   void next();
   void sendMove();
+  void sendSetting();
   void nextOfMove();
   void nextTowardsGoal();
 
   /// s of motion by which an extrapolated position may be wrong, and axes of unequal speed beside their line.
   static constexpr double kExtrapolatedMotion = 0.1;
   static constexpr double kStraight = 1e-6;  // m, by which a slow device may be beside its line, besides 2 counts
+  static constexpr double kFaster = 1.1;     // of the commanded speed; a device that has come further was told another
 
   const double reading_margin_;  // m
   double line_margin_ = 0;       // m, by which a reading of the last move may be beside its line
@@ -133,12 +151,15 @@ class PolledManipulator : public MoveByMove {
   int setup_step_ = 0;
   std::optional<std::string> setup_reply_;  // the last reply to this step
   int setup_tries_ = 0;
-  std::string setting_;           // of the last move with one; empty: unknown
+  bool setup_sent_ = false;       // this step's line was accepted, and is read back
+  int setup_unset_ = 0;           // times that it was not set
+  std::string setting_;           // of the last move with one, as read back; empty: unknown
   std::string confirmed_;         // last confirmed setting; survives a failed session
   int lost_setting_replies_ = 0;  // successive replies without the setting
   bool check_setting_ = false, stop_requested_ = false, motion_requested_ = false;
   double next_move_ = 0;  // s
   int overdue_ = 0;       // readings under way, since a move has arrived
+  int too_fast_ = 0;      // moves in a row that were too fast
   Progress progress_;
 };
 

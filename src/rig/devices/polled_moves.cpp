@@ -16,13 +16,18 @@ constexpr int kShorter = 5;          // attempts to shorten a part of the path
 
 }  // namespace
 
+/// Sends the setting of the move, then asks for it.
+void PolledManipulator::sendSetting() {
+  setting_.clear();
+  if (progress_.setting_sent) return request(Kind::kReadBack, settingQuery(progress_.setting));
+  request(Kind::kSetting, progress_.setting);
+}
+
 void PolledManipulator::sendMove() {
-  if (!progress_.setting.empty()) {
-    setting_ = std::exchange(progress_.setting, "");  // if this fails, the next session discards it
-    return request(Kind::kMove, setting_);
-  }
   const std::string line = std::exchange(progress_.move, "");
   origin_monitor_.setMove(move_->to);
+  progress_.from = move_->from;
+  progress_.sent = time();
   move_->begin = time() + static_cast<double>(line.size() + 1) * common_.byteTime();
   progress_.end = move_->begin + move_->duration;
   progress_.overdue = activeTime() + 1.25 * move_->duration + kMoveAllowance;
@@ -31,6 +36,7 @@ void PolledManipulator::sendMove() {
 }
 
 void PolledManipulator::nextOfMove() {
+  if (!progress_.setting.empty()) return sendSetting();
   if (!progress_.move.empty()) return sendMove();
   if (isOutdated()) return stopFirst();
   if (!dialect_.motion.empty() && !motion_requested_) return request(Kind::kMotion, dialect_.motion);
@@ -86,6 +92,7 @@ void PolledManipulator::nextTowardsGoal() {
   progress_ = Progress{};
   progress_.setting = chosen.setting == setting_ ? "" : chosen.setting;
   progress_.move = chosen.move;
+  progress_.speed = chosen.speed;
   if (in_steps) progress_.next = time() + length(to - from) / wanted;
   nextOfMove();
 }
@@ -108,7 +115,7 @@ void PolledManipulator::checkMove(const Eigen::Vector3d& position) {
   }
   if (at_rest) {
     next_move_ = progress_.next;
-    tries_ = overdue_ = 0;
+    tries_ = overdue_ = too_fast_ = 0;
     return rest(position);
   }
   const bool rests_elsewhere = progress_.at_rest_since && activeTime() > *progress_.at_rest_since + kSettleTime;
@@ -121,6 +128,26 @@ void PolledManipulator::checkMove(const Eigen::Vector3d& position) {
     move_->from = position;
     move_->begin = then;
   }
+}
+
+/// Whether a reading on the way is further along it than the device can have come since the move was sent. The time of
+/// receipt is an upper bound of that of the reading, and the whole move is compared: a program that stood still reads
+/// late, but never too far. A reading beside the way is judged elsewhere.
+bool PolledManipulator::isTooFar(const Eigen::Vector3d& position) const {
+  if (!isUnderWay() || besideTheLine(position) > line_margin_) return false;
+  const Eigen::Vector3d way = (move_->to - progress_.from).normalized();
+  const double along = (position - progress_.from).dot(way) * count();
+  const double margin = std::min(reading_margin_, kStraight + 2 * count());
+  return along > kFaster * progress_.speed * (time() - progress_.sent) + margin;
+}
+
+/// Stops a move that is too fast. Where the device is by now is not known before it rests.
+void PolledManipulator::handleTooFast() {
+  if (++too_fast_ >= kTries) {
+    return raiseFault("it moves faster than it was told: the line changes bytes; check cable and port, then enable");
+  }
+  forgetPosition();
+  stopUnheard();
 }
 
 /// Handles a move that ended before its goal. A device is hardly ever stopped exactly at 0. A

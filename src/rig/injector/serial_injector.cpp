@@ -167,7 +167,7 @@ bool SerialInjector::keepOpen(double time) {
   // The device may have been switched off.
   if (!waiting_balance_ && !protocol_.balance.empty()) waiting_balance_ = sent_balance_;
   waiting_begin_ = !protocol_.begin.empty();
-  tries_ = 0;
+  tries_ = query_tries_ = 0;
   dialogue_.resynchronize(time);
   return true;
 }
@@ -269,7 +269,8 @@ void SerialInjector::complete() {
     over_ = false;
   }
   tries_ = 0;
-  error_text_.clear();
+  if (done == Task::kQuery) query_tries_ = 0;
+  if (query_tries_ < kTries) error_text_.clear();
 }
 
 /// Keeps the first reason, and adds others only once.

@@ -55,6 +55,7 @@ class SerialInjector : public InjectorDevice {
  private:
   enum class Task { kNone, kBegin, kPulse, kVerify, kBalance, kStop, kQuery };
   enum class Refusal { kNo, kYes };
+  static constexpr int kTries = 3;  // of commands that may be repeated
 
   const InjectorProtocol::Exchanges& exchanges(Task task) const;
   bool triggered() const;
@@ -115,7 +116,8 @@ class SerialInjector : public InjectorDevice {
   bool balance_confirmed_ = false;         ///< the device has accepted the last one sent
   std::optional<double> waiting_balance_;  ///< Pa
   double sent_balance_ = 0;                ///< Pa
-  int tries_ = 0;                          ///< of the present stop, balance or query without a valid reply
+  int tries_ = 0;                          ///< of the present stop or balance without a valid reply
+  int query_tries_ = 0;                    ///< queries in a row without a valid reply; other commands may have one
   double settling_;                        ///< s, settling time of the regulator
   double changed_ = -1e9;                  ///< s, of the last pressure change by a pulse, its end or a new balance
   std::optional<double> pressure_;         ///< Pa, as queried since then

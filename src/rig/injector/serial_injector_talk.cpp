@@ -7,12 +7,6 @@
 #include "rig/injector/serial_injector.h"
 
 namespace microinjection {
-namespace {
-
-constexpr int kTries = 3;  // for commands that may be repeated
-
-}  // namespace
-
 void SerialInjector::giveUpPulse(const std::string& reason, bool was_triggered, Refusal refusal) {
   if (!sent_pulse_) return;  // cancelled meanwhile
   std::string what = "pulse " + std::to_string(sent_pulse_->id) + ": " + reason;
@@ -45,8 +39,8 @@ void SerialInjector::giveUpVerification(const std::string& reason) {
 void SerialInjector::abort(const std::string& reason, Refusal refusal) {
   const bool refused = refusal == Refusal::kYes;
   bad_replies_ += refused ? 0 : 1;
-  ++tries_;
-  const bool last = refused || tries_ >= kTries;
+  const int tries = task_ == Task::kQuery ? ++query_tries_ : ++tries_;
+  const bool last = refused || tries >= kTries;
   const bool was_triggered = task_ == Task::kPulse && step_ + 1 == protocol_.pulse.size();
   const Task given_up = std::exchange(task_, Task::kNone);
   if (given_up == Task::kPulse) {

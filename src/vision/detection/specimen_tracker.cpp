@@ -1,11 +1,14 @@
 #include "vision/detection/specimen_tracker.h"
 
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 
 namespace microinjection {
 namespace {
 
 constexpr double kNearCell = 1.6;  // over the cell's radius: of a tip this near the gap or the dimple is measured
+const cv::Size kSamples(96, 72);
+constexpr double kSameScene = 0.5;  // correlation of two frames' samples, at least
 
 PipetteDetectorConfig readPipette(ConfigReader& reader, const std::string& kind, double direction) {
   PipetteDetectorConfig config = PipetteDetectorConfig::read(reader);
@@ -18,18 +21,28 @@ PipetteDetectorConfig readPipette(ConfigReader& reader, const std::string& kind,
 bool isSure(const PipetteDetection& pipette) { return pipette.finding.isFound(); }
 bool isSure(const CellDetection& cell) { return cell.size.isFound(); }
 
-/// The thing near its last place, else anywhere. What is followed is not lost by a search that finds nothing.
-/// `age`: frames since the whole one was searched for it.
+/// The thing near its last place, else anywhere. What is followed is not lost by a search that finds nothing, nor, but
+/// for the rarest ones, by one that finds nothing sure: its lines would jump to others.
 template <typename Detector, typename Detection>
-Detection follow(const Detector& detector, const Frame& frame, const Detection& last, double reach, int& age) {
-  ++age;
+Detection follow(const Detector& detector, const Frame& frame, const Detection& last, double reach, SearchPace& pace) {
   Detection tracked;
-  if (last.finding.hasValues()) tracked = detector.track(frame, last, reach);
-  const bool followed = last.finding.hasValues() && tracked.finding.hasValues();
-  if (followed && (isSure(tracked) || age < SpecimenTracker::kSearchEvery)) return tracked;
-  age = 0;
+  tracked.finding = last.finding;
+  const bool was_there = last.finding.hasValues();
+  if (was_there) tracked = detector.track(frame, last, reach);
+  const bool followed = tracked.finding.hasValues(), sure = followed && isSure(tracked);
+  if (sure || (was_there && !followed)) pace = SearchPace();
+  if (sure || !pace.isDue(followed ? SpecimenTracker::kSearchEvery : SpecimenTracker::kSearchMissingEvery))
+    return tracked;
   const Detection found = detector.detect(frame);
-  return followed && !found.finding.hasValues() ? tracked : found;
+  const bool rare = pace.waited() >= SpecimenTracker::kSearchEvery;
+  pace.searched(isSure(found));
+  return followed && !(rare ? found.finding.hasValues() : isSure(found)) ? tracked : found;
+}
+
+/// Correlation of two images of one size.
+double correlationOf(const cv::Mat& a, const cv::Mat& b) {
+  const cv::Mat away_a = a - cv::mean(a)[0], away_b = b - cv::mean(b)[0];
+  return away_a.dot(away_b) / std::max(std::sqrt(away_a.dot(away_a) * away_b.dot(away_b)), 1e-12);
 }
 
 /// Whether the round thing is at the end of the pipette or behind it: lip or wall of a thick one.
@@ -91,11 +104,27 @@ SpecimenTrackerConfig SpecimenTrackerConfig::read(ConfigReader& reader) {
 SpecimenTracker::SpecimenTracker(const SpecimenTrackerConfig& config)
     : config_(config), cell_(config.cell), injection_(config.injection), holding_(config.holding) {}
 
+void SearchPace::searched(bool sure) {
+  searches_ = sure ? 0 : searches_ + 1;
+  wait_ = searches_ < kFirst ? 0 : std::clamp(2 * wait_, 2, SpecimenTracker::kSearchEvery);
+  since_ = 0;
+}
+
+/// Compares single pixels of both frames: where one sees noise alone, each frame is another scene.
+bool SpecimenTracker::isAnotherScene(const Frame& frame) {
+  cv::Mat samples;
+  if (frame.refusal().empty()) cv::resize(frame.grey(), samples, kSamples, 0, 0, cv::INTER_NEAREST);
+  const bool another = samples.empty() || samples_.empty() || correlationOf(samples, samples_) < kSameScene;
+  samples_ = samples;
+  return another;
+}
+
 const SpecimenView& SpecimenTracker::next(const Frame& frame) {
+  if (isAnotherScene(frame)) cell_pace_ = injection_pace_ = holding_pace_ = SearchPace();
   SpecimenView view;
-  view.cell = follow(cell_, frame, view_.cell, config_.reach, cell_age_);
-  view.injection = follow(injection_, frame, view_.injection, config_.reach, injection_age_);
-  view.holding = follow(holding_, frame, view_.holding, config_.reach, holding_age_);
+  view.cell = follow(cell_, frame, view_.cell, config_.reach, cell_pace_);
+  view.injection = follow(injection_, frame, view_.injection, config_.reach, injection_pace_);
+  view.holding = follow(holding_, frame, view_.holding, config_.reach, holding_pace_);
   if (view.holding.finding.isFound())
     view.cell.dismissOthers([&](const Ellipse& thing) { return belongsTo(view.holding, thing); });
   measureIndentation(frame, view);

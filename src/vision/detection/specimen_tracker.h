@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "base/config_reader.h"
 #include "vision/detection/cell_detector.h"
 #include "vision/detection/indentation_contour.h"
@@ -31,10 +33,25 @@ struct SpecimenView {
 /// of the undisturbed outline. Where that is not found, the cell is uncertain. Its borders stay.
 void measureIndentation(const Frame& frame, SpecimenView& view);
 
+/// When the whole frame is searched for a thing: in each of the first frames in which it is lost or not sure, then more
+/// and more rarely while the searches find nothing sure, since one takes as long as some tracked frames.
+class SearchPace {
+ public:
+  /// Counts a frame. @param most  frames from one search to the next, at most
+  bool isDue(int most) { return ++since_ >= std::min(wait_, most); }
+  void searched(bool sure);
+  int waited() const { return wait_; }  ///< frames, from the search before to the one that is due
+
+  static constexpr int kFirst = 8;  ///< searches in successive frames
+
+ private:
+  int since_ = 0, wait_ = 0;  ///< frames
+  int searches_ = 0;          ///< without success
+};
+
 /// Follows cell and pipettes from frame to frame. What was found is searched near its last place;
-/// what is lost is searched in the whole frame. A pipette that is uncertain is followed too, and so is a
-/// cell whose diameter is. The whole frame is then searched for a better one in each `kSearchEvery`-th
-/// frame only, since a search takes as long as some images.
+/// what is lost is searched in the whole frame, see SearchPace. A pipette that is uncertain is followed too, and so
+/// is a cell whose diameter is. Everything is searched for in a frame that shows another scene than the last one.
 class SpecimenTracker {
  public:
   explicit SpecimenTracker(const SpecimenTrackerConfig& config);
@@ -43,14 +60,18 @@ class SpecimenTracker {
   const SpecimenView& next(const Frame& frame);
   const SpecimenView& view() const { return view_; }  ///< of the last frame
 
-  static constexpr int kSearchEvery = 30;
+  /// Frames between two searches for something better than what is followed, and for what is missing, at most.
+  static constexpr int kSearchEvery = 30, kSearchMissingEvery = 8;
 
  private:
+  bool isAnotherScene(const Frame& frame);
+
   SpecimenTrackerConfig config_;
   CellDetector cell_;
   PipetteDetector injection_, holding_;
   SpecimenView view_;
-  int cell_age_ = 0, injection_age_ = 0, holding_age_ = 0;  ///< frames, since the whole one was searched
+  SearchPace cell_pace_, injection_pace_, holding_pace_;
+  cv::Mat samples_;  ///< of the last frame's grey values
 };
 
 }  // namespace microinjection

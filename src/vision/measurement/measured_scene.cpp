@@ -28,7 +28,15 @@ YAML::Node withMeasuredSize(const YAML::Node& scene, double diameter, double zon
   return result;
 }
 
+void requireSeenZona(const YAML::Node& scene, const CellMeasurement& cell) {
+  if (layersOf(scene) == 2 && !cell.zona_thickness)
+    throw ConfigError(
+        "the scene has a zona, and none was found in the image: its thickness would be invented. Take a "
+        "scene of one layer, or an image that shows the zona");
+}
+
 YAML::Node withMeasuredSize(const YAML::Node& scene, const CellMeasurement& cell) {
+  requireSeenZona(scene, cell);
   const double none = std::numeric_limits<double>::quiet_NaN();
   return withMeasuredSize(scene, cell.diameter.value, cell.zona_thickness ? cell.zona_thickness->value : none);
 }

@@ -12,7 +12,12 @@ namespace microinjection {
 /// outer one of two has the thickness (m) if that is a number. Throws ConfigError for a scene without
 /// a diameter or layers, and for a thickness that leaves no inner layer.
 YAML::Node withMeasuredSize(const YAML::Node& scene, double diameter, double zona_thickness);
+/// Throws also for a scene with a zona when none was measured, see requireSeenZona().
 YAML::Node withMeasuredSize(const YAML::Node& scene, const CellMeasurement& cell);
+
+/// Throws ConfigError for a scene of two layers and a measurement without a zona: an image in which the zona was missed
+/// says nothing about its thickness.
+void requireSeenZona(const YAML::Node& scene, const CellMeasurement& cell);
 
 /// Text of a scene file, with what was measured and the file that it was written from.
 std::string measuredSceneText(const YAML::Node& scene, const std::string& measured, const std::string& from);

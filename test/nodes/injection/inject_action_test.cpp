@@ -197,5 +197,21 @@ TEST_F(ExpectedPunctureTest, BeyondTheLimitsIsNotTried) {
   EXPECT_FALSE(chain_.cell().punctured);
 }
 
+/// The device hears the end of a pulse after 0.4 s at the earliest.
+TEST(RefusedPulseTest, EndsTheInjectionWithTheInjectorsReason) {
+  InjectionChain chain({"injector:=emulated_arduino"});
+  ActionClient<cell_microinjection::InjectAction> client(chain.session.world(), "controller/inject");
+  const Eigen::Vector3d start = chain.resting();
+  InjectGoal goal = punctureGoal();
+  goal.duration = 0.3;
+  client.send(goal);
+  ASSERT_TRUE(chain.session.until([&] { return client.ended(); }, 30)) << chain.status();
+  EXPECT_EQ(client.state(), GoalStatus::ABORTED);
+  EXPECT_EQ(client.result()->outcome, "not_injected");
+  EXPECT_EQ(client.result()->reason, "the injector refused the pulse: pulse duration = 0.3 s, allowed [0.4, 60] s");
+  EXPECT_EQ(chain.injector().pulses, 0U);
+  chain.expectOut(start);
+}
+
 }  // namespace
 }  // namespace microinjection

@@ -41,6 +41,21 @@ TEST(SoleSender, OneThatTellsChangesOnlyIsARivalForLongerWhileItIsThere) {
   EXPECT_EQ(senders.rivals(at(103.1), true), "") << "it may have been killed, which no subscriber is told";
 }
 
+TEST(SoleSender, TwoThatTakeTurnsSlowlyAreRivals) {
+  SoleSender senders;
+  for (int second = 0; second < 2; ++second) {
+    senders.receive("/camera", at(second));
+    senders.receive("/stranger", at(second + 0.5));
+  }
+  for (int second = 2; second < 9; ++second) {
+    senders.receive("/camera", at(second));
+    EXPECT_EQ(senders.rivals(at(second)), "/camera and /stranger");
+    senders.receive("/stranger", at(second + 0.5));
+    EXPECT_EQ(senders.rivals(at(second + 0.5)), "/camera and /stranger");
+  }
+  EXPECT_EQ(senders.rivals(at(20)), "");
+}
+
 TEST(SoleSender, RefusesWhatComesFromTwo) {
   SoleSender senders;
   EXPECT_EQ(senders.refusalOf("/camera", at(0)), "");

@@ -133,6 +133,12 @@ TEST_F(InjectionModesTest, APulseByHandThatEndsEarlyIsTold) {
   steps(1000);
   EXPECT_EQ(controller_.notice(), "") << "it was done";
   EXPECT_EQ(controller_.injection(), InjectionState::kPunctured);
+  ASSERT_EQ(controller_.command("inject"), "");
+  rig_.sense(controller_);
+  rig_.input.injector = InjectorReport{false, 0, false, "it is too short"};
+  controller_.step(rig_.input, SpringRig::kStep);
+  EXPECT_EQ(controller_.notice(), "the injector refused the pulse: it is too short");
+  EXPECT_EQ(controller_.injection(), InjectionState::kPunctured);
   rig_.force_tells = false;
   steps(2);
   EXPECT_EQ(controller_.command("inject"), "the needle is held: no valid force");

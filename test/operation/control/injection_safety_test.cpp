@@ -259,6 +259,20 @@ TEST_F(InjectionSafetyTest, APulseThatWasBrokenOffIsNoInjection) {
   }
 }
 
+TEST_F(InjectionSafetyTest, APulseThatTheInjectorRefusesEndsTheInjectionAtOnceWithItsReason) {
+  enable();
+  ASSERT_TRUE(reach(InjectionState::kInject));
+  rig_.sense(controller_);
+  rig_.input.injector = InjectorReport{false, 0, false, "pulse duration = 0.3 s, allowed [0.4, 60] s"};
+  rig_.setpoint = controller_.step(rig_.input, SpringRig::kStep);
+  EXPECT_FALSE(controller_.pulse());
+  EXPECT_EQ(controller_.injection(), InjectionState::kWithdraw);
+  rig_.run(controller_);
+  EXPECT_EQ(controller_.result().outcome, InjectionOutcome::kNotInjected);
+  EXPECT_EQ(controller_.result().reason, "the injector refused the pulse: pulse duration = 0.3 s, allowed [0.4, 60] s");
+  EXPECT_EQ(rig_.depth(), 0);
+}
+
 TEST_F(InjectionSafetyTest, WhatAPersonHasPausedIsPausedAgainWhenItIsOut) {
   enable();
   ASSERT_TRUE(reach(InjectionState::kIndent));

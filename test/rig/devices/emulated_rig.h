@@ -51,6 +51,8 @@ class EmulatedRig {
     time_ += duration;
     wire_->stall(duration);
   }
+  /// The program does nothing for `duration` (s), while the device goes on.
+  void standStill(double duration) { time_ += duration; }
   /// Steps for `duration` (s); `each` before every step.
   void run(double duration, const std::function<void()>& each = nullptr) {
     for (double end = time_ + duration; time_ < end - 1e-9;) {

@@ -176,7 +176,8 @@ TEST(GuardedRig, NothingMovesWhileThereIsNoGuard) {
 
 volatile std::sig_atomic_t pauses = 0;
 
-/// A program of its own that streams a velocity, with a pause when it gets SIGUSR1; it tells `reports` why it is not
+/// A program of its own that streams a velocity, with a pause when it gets SIGUSR1, as an operator makes it who first
+/// clears a fault; it tells `reports` why it is not
 /// ready, and "ready" when it is.
 [[noreturn]] void streamVelocity(const std::string& link, int reports) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -184,6 +185,7 @@ volatile std::sig_atomic_t pauses = 0;
   ZaberConfig config;
   config.joints.origin.setConstant(-12.5e-3);
   config.port.path = link;
+  config.reply_timeout = 1;  // s: the machine may hold the emulated device up, whose silence would be a fault
   ZaberDriver driver(config, std::make_unique<SerialPort>(config.port));
   const auto geometry = ManipulatorGeometry::fromUrdf(rigUrdf(), 0);
   Micromanipulator needle(geometry, CollisionGuard(rigUrdf(), geometry, 2e-6), {}, driver);
@@ -192,6 +194,7 @@ volatile std::sig_atomic_t pauses = 0;
   for (int pause = 0;; pause = std::max(0, pause - 1)) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
     if (pauses != 0) pause = 300;
+    if (pauses != 0 && driver.state() == ManipulatorDevice::State::kFault) needle.clearFault();
     pauses = 0;
     time += std::clamp(wallTime() - wall, 1e-6, 2e-3);
     wall = wallTime();

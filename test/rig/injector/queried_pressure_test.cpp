@@ -152,5 +152,46 @@ TEST_F(TimedQueryTest, OfTheBalanceIsNotShownInATimedPulse) {
   EXPECT_NEAR(pressure(), 990, 1e-9);
 }
 
+/// A device that is asked whether it is there, and set again when it may have been reset.
+class SilentQueryTest : public DialogueTest {
+ protected:
+  static constexpr char kText[] = R"yaml(
+pulse: [{send: "P{pressure_hPa:1} {duration_ms:0}", expect: OK}]
+balance: [{send: "C{pressure_hPa:1}", expect: OK, timeout: 0.2}]
+query: {send: "?{count}", expect: "heard (.*)", confirm: line, timeout: 0.2}
+query_period: 0.3
+terminator: CRLF
+quiet: 0.05
+refuse: "ERR.*"
+)yaml";
+  SilentQueryTest() : DialogueTest(kText) { answers["?"] = ""; }
+};
+
+TEST_F(SilentQueryTest, ADeviceThatNeverAnswersAQueryIsGivenUpThoughItTakesItsBalancePressure) {
+  answers.erase("?");
+  run(5);
+  EXPECT_GT(count("C10.0"), 3);
+  EXPECT_EQ(injector.fault(), "query: no good reply in time");
+  EXPECT_NE(injector.pulse({5, 12300, 0.25}), "");
+  bool told = true;
+  for (int i = 0; i < 200; ++i) {
+    run(0.01);
+    told = told && !injector.fault().empty();
+  }
+  EXPECT_TRUE(told) << "also when it has taken the balance pressure again";
+}
+
+TEST_F(SilentQueryTest, OneThatAnswersAgainIsNoFaultAnyMore) {
+  answers.erase("?");
+  run(5);
+  ASSERT_NE(injector.fault(), "");
+  for (char count = '0'; count <= '9'; ++count) answers[std::string("?") + count] = std::string("heard ?") + count;
+  for (const char* letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"; *letters != 0; ++letters) {
+    answers[std::string("?") + *letters] = std::string("heard ?") + *letters;
+  }
+  run(2);
+  EXPECT_EQ(injector.fault(), "");
+}
+
 }  // namespace
 }  // namespace microinjection

@@ -82,6 +82,10 @@ TEST_F(SpecimenTrackerTest, AnUncertainCellIsFollowedAndSometimesSearched) {
   const SpecimenView& view = tracker_.next(Frame(microscope_.render(scene, focus, 1)));
   ASSERT_TRUE(view.cell.finding.hasValues()) << view.cell.finding.reason;
   ASSERT_FALSE(view.cell.size.isFound());
+  // The searches become rarer: after the first ones they are 2, 4, 8 and 16 frames apart, then kSearchEvery.
+  const Frame alone(microscope_.render(scene, focus, 2));
+  for (int i = 0; i < SearchPace::kFirst - 1 + 2 + 4 + 8 + 16 + SpecimenTracker::kSearchEvery; ++i)
+    tracker_.next(alone);
   // A second cell is seen by a search of the whole frame only.
   scene.cells.push_back(CellScene::round({70e-6, 0}, kTrackedRadius, 6e-6, 0));
   const Frame both(microscope_.render(scene, focus, 2));
@@ -91,6 +95,37 @@ TEST_F(SpecimenTrackerTest, AnUncertainCellIsFollowedAndSometimesSearched) {
     ASSERT_LT(cv::norm(view.cell.centre - pixel(-70e-6, 0)), 1) << i;
   }
   EXPECT_EQ(tracker_.next(both).cell.others.size(), 1U);
+}
+
+TEST_F(SpecimenTrackerTest, WhatIsMissingIsSearchedMoreAndMoreRarely) {
+  MicroscopeScene scene = heldOocyte(60e-6);
+  scene.injection.reset();
+  for (int i = 0; i < 4 * SearchPace::kFirst; ++i) ASSERT_FALSE(see(scene).injection.finding.hasValues()) << i;
+  int frames = 1;
+  while (!see(heldOocyte(60e-6)).injection.finding.isFound()) ++frames;
+  EXPECT_GT(frames, 1);
+  EXPECT_LE(frames, SpecimenTracker::kSearchMissingEvery);
+}
+
+TEST_F(SpecimenTrackerTest, InAnotherSceneEverythingIsSearched) {
+  MicroscopeScene scene = heldOocyte(60e-6);
+  scene.injection.reset();
+  scene.holding.reset();
+  for (int i = 0; i < 4 * SearchPace::kFirst; ++i) ASSERT_FALSE(see(scene).injection.finding.hasValues()) << i;
+  MicroscopeScene other = heldOocyte(70e-6);
+  other.cells[0] = CellScene::round({50e-6, -20e-6}, 30e-6, 4e-6, 0);
+  const SpecimenView& view = see(other);
+  EXPECT_TRUE(view.injection.finding.isFound()) << view.injection.finding.reason;
+  EXPECT_TRUE(view.cell.finding.isFound()) << view.cell.finding.reason;
+}
+
+/// A needle that goes back by more than the reach: where it was, its shaft's edges are gone, and something else may be
+/// taken for it.
+TEST_F(SpecimenTrackerTest, WhatIsNoLongerSureIsSearchedAtOnce) {
+  for (int i = 0; i < 4; ++i) ASSERT_TRUE(see(heldOocyte(45e-6)).injection.finding.isFound());
+  const SpecimenView& view = see(heldOocyte(75e-6));
+  ASSERT_TRUE(view.injection.finding.isFound()) << view.injection.finding.reason;
+  EXPECT_LT(cv::norm(view.injection.end - pixel(0, 75e-6)), 0.5);
 }
 
 TEST_F(SpecimenTrackerTest, AnEmptyFrameFindsNothingAndTheNextOneEverything) {

@@ -86,5 +86,14 @@ TEST(MeasuredScene, HasTheMeasuredLengthsAndNothingElse) {
   EXPECT_THROW(withMeasuredSize(YAML::Load("{needle: 1}"), cell), ConfigError);
 }
 
+/// With the diameter alone both radii would change in proportion: a zona that nobody has seen.
+TEST(MeasuredScene, InventsNoZona) {
+  CellMeasurement cell;
+  cell.diameter = {80e-6, 1e-7};
+  const YAML::Node layered = YAML::Load("{cell: {layers: [{outer_radius: 38e-6}, {outer_radius: 32e-6}]}}");
+  EXPECT_THROW(withMeasuredSize(layered, cell), ConfigError);
+  EXPECT_NO_THROW(withMeasuredSize(YAML::Load("{cell: {layers: [{outer_radius: 38e-6}]}}"), cell));
+}
+
 }  // namespace
 }  // namespace microinjection

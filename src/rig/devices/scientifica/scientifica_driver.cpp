@@ -8,6 +8,8 @@
 namespace microinjection {
 namespace {
 
+constexpr double kRounded = 0.02;  // of a setting
+
 enum Step { kMaker, kVersion, kScaleX, kScaleY, kScaleZ, kAcceleration, kStartSpeed, kSteps };
 
 PolledManipulator::Dialect dialect(const ScientificaConfig& config) {
@@ -18,7 +20,8 @@ PolledManipulator::Dialect dialect(const ScientificaConfig& config) {
   dialect.stop = "STOP";
   dialect.position = config.version == 2 ? "POS" : "P";
   dialect.motion = "S";
-  dialect.longest_move = 50;
+  dialect.longest_move = 60;  // TOP, its reading back, ABS, and their replies
+  dialect.move_replies = 3;
   dialect.longest_reading = 36;  // includes S and its reply
   dialect.stop_duration = config.speed / config.acceleration;
   dialect.moved_by_hand = true;
@@ -95,13 +98,18 @@ std::string ScientificaDriver::handleSetup(int step, const std::string& reply) {
   }
 }
 
+bool ScientificaDriver::isReadBack(int step) const { return step == kAcceleration || step == kStartSpeed; }
+
 /// A setting is a word and a number; the word alone requests the number.
 std::string ScientificaDriver::settingQuery(const std::string& setting) const {
   return setting.substr(0, setting.find(' '));
 }
 
+/// A card may round what it was told; a digit that the line has changed moves it by more, or does no harm.
 bool ScientificaDriver::isKept(const std::string& setting, const std::string& reply) const {
-  return readScientificaNumber(reply) == readScientificaNumber(setting.substr(setting.find(' ') + 1));
+  const std::optional<double> told = readScientificaNumber(reply);
+  const std::optional<double> set = readScientificaNumber(setting.substr(setting.find(' ') + 1));
+  return told && set && std::abs(*told - *set) <= kRounded * std::abs(*set);
 }
 
 std::optional<Eigen::Vector3d> ScientificaDriver::readPosition(const std::string& reply) {

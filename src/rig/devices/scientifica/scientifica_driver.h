@@ -20,7 +20,8 @@ struct ScientificaConfig : PolledManipulatorConfig {
 /// step size. At the start the card must confirm the maker Scientifica, the version in the file,
 /// and the scale at which that version's positions have their known unit. Anything else is a fault
 /// with the reply, and nothing moves. Then the driver sets the acceleration, and the smallest start
-/// speed.
+/// speed. Every setting is read back, also the speed before each move, because the line may have
+/// changed one of its digits.
 class ScientificaDriver : public PolledManipulator {
  public:
   ScientificaDriver(const ScientificaConfig& config, std::unique_ptr<Wire> wire);
@@ -30,6 +31,7 @@ class ScientificaDriver : public PolledManipulator {
   std::string handleSetup(int step, const std::string& reply) override;
   std::optional<Eigen::Vector3d> readPosition(const std::string& reply) override;
   std::optional<bool> readMotion(const std::string& reply) const override;
+  bool isReadBack(int step) const override;
   std::string settingQuery(const std::string& setting) const override;
   bool isKept(const std::string& setting, const std::string& reply) const override;
   bool acknowledges(const std::string& line, const std::string& reply) const override;

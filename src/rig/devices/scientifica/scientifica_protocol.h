@@ -18,6 +18,7 @@ namespace microinjection {
 ///   along it;
 /// - the smallest TOP of a version 3 card (1 um/s is assumed), and the units of its ACC (um/s^2,
 ///   after acq4);
+/// - whether TOP, FIRST and ACC are told as they were set, within 2 %;
 /// - the meaning of error numbers, and the reply to an empty line: nothing is assumed;
 /// - the effect of an ABS while moving: acq4 notes that it has no reply, so none is sent then.
 
