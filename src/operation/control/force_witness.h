@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <boost/circular_buffer.hpp>
 #include <optional>
 #include <string>
 
@@ -36,6 +37,10 @@ class ForceWitness {
   /// another reading than that of the last step.
   void step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, const std::optional<Eigen::Vector3d>& force,
             bool is_new = true);
+  /// After step() and the controller's monitor `acting` of `force` (N, on the tip, `world`): compares the two forces
+  /// where each has a new reading since they were compared last. One that is late is therefore not compared with what
+  /// the other one has felt meanwhile. `is_new`: as in step().
+  void compare(const NeedleMonitor& acting, const Eigen::Vector3d& force, bool is_new);
 
   /// What an image shows of a tip before its cell.
   struct Image {
@@ -46,17 +51,28 @@ class ForceWitness {
   /// touches. `dt`: s. An image that shows the tip deeper says nothing: the needle may be above the cell in the view.
   void see(const NeedleMonitor& acting, const std::optional<Image>& image, double dt);
 
-  /// Why the needle must not go on; empty: the two forces agree, or there is no witness. `acting`: the monitor of the
-  /// force that the controller acts on. Only before the first puncture: the membranes of a cell and of its model may
-  /// fail one after the other.
-  std::string disagreement(const NeedleMonitor& acting) const;
+  /// Why the needle must not go on; empty: the two forces agree, or there is no witness. Only before the first
+  /// puncture: the membranes of a cell and of its model may fail one after the other.
+  std::string disagreement() const;
   double depth() const { return monitor_.depth(); }  ///< m past the touch that it has felt; 0 before
   /// Why the sensor contradicts a puncture: its force has not fallen. Empty: it does not, or feels nothing.
   std::string deniesPuncture() const;
 
  private:
+  /// A reading of each of the two forces, N along the pipette above its offset.
+  struct Pair {
+    double acting, witness;
+  };
+  void forgetPairs();
+  Pair meanOfPairs() const;
+  std::string differenceOf(const NeedleMonitor& acting) const;
+
   WitnessConfig config_;
   NeedleMonitor monitor_;
+  boost::circular_buffer<Pair> pairs_{32};         ///< the last ones
+  bool new_acting_ = false, new_witness_ = false;  ///< since the last pair
+  std::string difference_;                         ///< of the last pairs
+  double axial_ = 0;                               ///< N along the pipette, of the last reading
   Eigen::Vector3d tip_ = Eigen::Vector3d::Zero(), axis_ = Eigen::Vector3d::UnitZ();  ///< m; of the last step
   bool heard_ = false;                                                               ///< in the last step
   bool punctured_ = false;     ///< a puncture was felt since the touch

@@ -195,7 +195,7 @@ std::string InjectionController::contradiction() const {
 }
 
 std::string InjectionController::disagreement() const {
-  return witness_fault_.empty() ? witness_.disagreement(monitor_) : witness_fault_;
+  return witness_fault_.empty() ? witness_.disagreement() : witness_fault_;
 }
 
 void InjectionController::observe(const Input& input, bool force_valid, double dt) {
@@ -213,6 +213,7 @@ void InjectionController::observe(const Input& input, bool force_valid, double d
   } else {
     monitor_.move(*input.needle, input.axis);
   }
+  if (force_valid) witness_.compare(monitor_, *input.force, input.force_is_new);
   witness_.see(monitor_, input.image, dt);
   if (!byHand()) return;
   monitorManualPulse(input, dt);
