@@ -21,6 +21,7 @@ namespace microinjection {
 namespace {
 
 constexpr const char* kFolderVariable = "MICROINJECTION_MICROGRAPHS";
+constexpr char kStacks[] = "real_stacks", kSequences[] = "real_sequences";  // parts of the set real
 
 struct VisionOptions {
   int images = 40;
@@ -58,11 +59,16 @@ std::vector<ImageTransform> chosenTransforms() {
   return chosen;
 }
 
+bool isRealSet(const std::string& name) { return name == "real" || name == kStacks || name == kSequences; }
+
 void measureReal(const Micrographs& micrographs, const TakeRow& take) {
-  realRows(micrographs, chosenTransforms(), vision_options.told ? RealSetup::kTold : RealSetup::kDefault, take);
-  if (!vision_options.transforms.empty() || !vision_options.micrographs.empty()) return;
-  focusStackRows(micrographs, take);
-  sequenceRows(micrographs, take);
+  const std::string& only = vision_options.only;
+  const bool all = only != kStacks && only != kSequences;
+  if (all)
+    realRows(micrographs, chosenTransforms(), vision_options.told ? RealSetup::kTold : RealSetup::kDefault, take);
+  if (all && !(vision_options.transforms.empty() && vision_options.micrographs.empty())) return;
+  if (only != kSequences) focusStackRows(micrographs, take);
+  if (only != kStacks) sequenceRows(micrographs, take);
 }
 
 void writeContactSheet(const Micrographs& micrographs) {
@@ -85,7 +91,7 @@ std::string table() {
     renderedRows(condition, vision_options.seed, vision_options.images, vision_options.pipettes_only, take);
   }
   const char* folder = std::getenv(kFolderVariable);
-  if (folder != nullptr && (only.empty() || only == "real")) {
+  if (folder != nullptr && (only.empty() || isRealSet(only))) {
     Micrographs micrographs(folder);
     if (!vision_options.micrographs.empty()) micrographs.keepOnly(vision_options.micrographs);
     if (!vision_options.contact_sheet.empty()) writeContactSheet(micrographs);
@@ -106,7 +112,8 @@ int main(int argc, char** argv) {
     more.add_options()(name, value, description);
   };
   add("images", po::value(&options.images)->default_value(options.images), "rendered images of each condition");
-  add("only", po::value(&options.only), "one set: the name of a condition as in the table, or real");
+  add("only", po::value(&options.only),
+      "one set: the name of a condition as in the table, real, real_stacks or real_sequences");
   add("seed", po::value(&options.seed)->default_value(options.seed),
       "of the first image; constants are chosen with seeds below 100000");
   add("pipettes", po::bool_switch(&options.pipettes_only), "rendered images: measures the pipettes only");

@@ -145,6 +145,11 @@ int run(int argc, char** argv) {
     return kNotFound;
   }
   printLengths(*cell, plane);
+  if (!arguments.scene.empty() && hasUnseenZona(loadYamlMap(arguments.scene), *cell)) {
+    flushStandardOutput();
+    std::cerr << "measure_cell: " << arguments.scene << ": " << kUnseenZona << '\n';
+    return kNotFound;
+  }
   if (!arguments.scene.empty()) {
     const YAML::Node node = sceneOf(arguments, *cell);
     const Scene scene = parseScene(node, arguments.scene + " with the measured lengths");

@@ -35,7 +35,7 @@ Example:
   measure_cell stack/ --pixel-size 0.25e-6 --scene config/cells/mouse_oocyte_zona.yaml --out measured.yaml
 
 Exit status: 0 found; 2 bad usage, or input or output that cannot be read or written (the message names it); 3 the cell
-is not found or uncertain: no scene is written.
+is not found or uncertain, or the scene has a zona and the image shows none: no scene is written.
 
 )";
 

@@ -107,7 +107,8 @@ void InjectorNode::onPulse(const cell_microinjection::InjectionPulse& message) {
   const std::string command = "pulse " + std::to_string(message.id);
   if (message.id == 0) return log_.addResult(command, "its id is 0, which means none");
   const std::string error = stampError(message.header);
-  if (!error.empty()) return log_.addResult(command, error);
+  // Of a pulse that is held the next message may be in time.
+  if (!error.empty()) return log_.addResult((message.held ? "a message of " : "") + command, error);
   // A refused id counts as used, too: the same message, received again, must not inject later.
   if (!ids_.isNew(message.id)) {
     if (message.id == held_) {

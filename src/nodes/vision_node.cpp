@@ -187,7 +187,7 @@ std::string VisionNode::familyOf(const CellMeasurement& cell) const {
   if (parameters_.scene.empty()) return "not known: this node has no scene";
   const YAML::Node scene = loadYamlMap(parameters_.scene);
   if (cell.zona_thickness && layersOf(scene) != 2) return "in no family: the image shows a zona, the scene has none";
-  if (!cell.zona_thickness && layersOf(scene) == 2) return "in no family: the scene has a zona, the image shows none";
+  if (hasUnseenZona(scene, cell)) return "in no family: the scene has a zona, the image shows none";
   return describeFamilyOf(parseScene(withMeasuredSize(scene, cell), parameters_.scene), parameters_.families);
 }
 

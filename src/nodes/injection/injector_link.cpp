@@ -16,14 +16,17 @@ InjectorLink::InjectorLink(Cycle& cycle, double timeout)
 
 std::optional<InjectorReport> InjectorLink::report(const ros::Time& now) {
   const auto* state = state_.get(now);
-  if (!state || !state->fault.empty() || !std::isfinite(state->volume)) return std::nullopt;
+  if (!state) return std::nullopt;
   readRefusal(state->refusal);
+  // A fault may be why it was refused.
+  if (!refusal_.empty()) return InjectorReport{state->busy, 0, false, refusal_};
+  if (!state->fault.empty() || !std::isfinite(state->volume)) return std::nullopt;
   if (pending_ != 0) {
     const bool over = state->last_id == pending_ || (begun_ && !state->busy);
     begun_ = begun_ || state->busy;
     if (over) pending_ = 0;
   }
-  return InjectorReport{state->busy || pending_ != 0, state->volume, state->last_id == message_.id, refusal_};
+  return InjectorReport{state->busy || pending_ != 0, state->volume, state->last_id == message_.id};
 }
 
 /// The injector tells why its last command was refused: "pulse 5 refused: ...". Other commands may follow.
@@ -43,8 +46,8 @@ void InjectorLink::setPulse(const std::optional<PulseGoal>& pulse, const ros::Ti
     message_.held = true;
     pulse_.publish(message_);
     begun_ = false;
-    refusal_.clear();
   }
+  if (!pulse || !requested_) refusal_.clear();
   if (pulse && pending_ != 0 && isDue(message_.header.stamp, now, kRepetition)) {
     message_.header.stamp = now;
     pulse_.publish(message_);

@@ -40,7 +40,7 @@ class InjectorLink {
   cell_microinjection::InjectionPulse message_;  ///< the last one published
   std::uint64_t pending_ = 0;                    ///< id of the pulse under way; 0: none
   bool begun_ = false;                           ///< the injector has reported busy for it
-  std::string refusal_;                          ///< of the last pulse; empty: it was not refused
+  std::string refusal_;                          ///< of the requested pulse; empty: it was not refused
 };
 
 }  // namespace microinjection

@@ -41,8 +41,10 @@ class SoleSender {
   /// sender may be silent for long and then send the next one.
   std::string rivals(const ros::Time& now, bool both_are_there = false) const {
     if (!hasOther()) return "";
-    // One of a slow camera's two senders is silent for as long as its images are apart.
-    const double silence = std::clamp(2 * other_.interval, kHandOver, kHandOverOfChanges);
+    // One of a slow camera's two senders is silent for as long as its images are apart. One that is silent for longer
+    // is no stream.
+    const bool stream = other_.interval <= kHandOverOfChanges;
+    const double silence = stream ? std::clamp(2 * other_.interval, kHandOver, kHandOverOfChanges) : kHandOver;
     if (both_are_there ? isDue(began_, now, kHandOverOfChanges) : isDue(other_.sent, now, silence)) return "";
     return std::min(other_.name, last_.name) + " and " + std::max(other_.name, last_.name);
   }

@@ -7,8 +7,10 @@
 namespace microinjection {
 namespace {
 
-constexpr double kFallen = 0.9;  ///< of the largest force: a smaller one has fallen
-constexpr int kLaterFelt = 200;  ///< steps, by which one force may tell a puncture before the other one
+constexpr double kFallen = 0.9;         ///< of the largest force: a smaller one has fallen
+constexpr long kCompared = 32;          ///< steps, over which forces are averaged
+constexpr std::size_t kLeastPairs = 4;  ///< of a slow sensor, that are averaged
+constexpr int kLaterFelt = 200;         ///< steps, by which one force may tell a puncture before the other one
 
 }  // namespace
 
@@ -51,6 +53,7 @@ void ForceWitness::forgetPairs() {
 
 void ForceWitness::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis,
                         const std::optional<Eigen::Vector3d>& force, bool is_new) {
+  ++steps_;
   tip_ = tip;
   axis_ = axis;
   heard_ = force && force->allFinite();
@@ -73,15 +76,16 @@ void ForceWitness::compare(const NeedleMonitor& acting, const Eigen::Vector3d& f
   new_acting_ = new_acting_ || is_new;
   if (!new_acting_ || !new_witness_ || !monitor_.ready() || !acting.ready()) return;
   new_acting_ = new_witness_ = false;
-  pairs_.push_back({force.dot(axis_) - acting.offset(), axial_ - monitor_.offset()});
+  while (pairs_.size() > kLeastPairs && steps_ - pairs_.front().step > kCompared) pairs_.pop_front();
+  pairs_.push_back({steps_, force.dot(axis_) - acting.offset(), axial_ - monitor_.offset()});
   difference_ = differenceOf(acting);
 }
 
 ForceWitness::Pair ForceWitness::meanOfPairs() const {
-  Pair sum{0, 0};
-  for (const Pair& pair : pairs_) sum = {sum.acting + pair.acting, sum.witness + pair.witness};
+  Pair sum{0, 0, 0};
+  for (const Pair& pair : pairs_) sum = {pair.step, sum.acting + pair.acting, sum.witness + pair.witness};
   const auto count = static_cast<double>(pairs_.size());
-  return {sum.acting / count, sum.witness / count};
+  return {sum.step, sum.acting / count, sum.witness / count};
 }
 
 void ForceWitness::see(const NeedleMonitor& acting, const std::optional<Image>& image, double dt) {

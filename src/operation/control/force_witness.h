@@ -23,8 +23,8 @@ struct WitnessConfig {
 };
 
 /// The force that the controller does not act on: the sensor's while it acts on the prediction, or the reverse. A
-/// sensor that is dead, frozen, late or in another unit, or a cell that is not where the scene has it, is found by
-/// their disagreement.
+/// sensor that is dead, frozen or in another unit, or a cell that is not where the scene has it, is found by their
+/// disagreement. One that is late is not: its age is judged where it is received.
 class ForceWitness {
  public:
   ForceWitness(const DetectionConfig& detection, const WitnessConfig& config);
@@ -41,6 +41,7 @@ class ForceWitness {
   /// where each has a new reading since they were compared last. One that is late is therefore not compared with what
   /// the other one has felt meanwhile. `is_new`: as in step().
   void compare(const NeedleMonitor& acting, const Eigen::Vector3d& force, bool is_new);
+  void forgetPairs();  ///< where either force has a gap: what was compared before says nothing of what comes
 
   /// What an image shows of a tip before its cell.
   struct Image {
@@ -61,15 +62,16 @@ class ForceWitness {
  private:
   /// A reading of each of the two forces, N along the pipette above its offset.
   struct Pair {
+    long step;
     double acting, witness;
   };
-  void forgetPairs();
   Pair meanOfPairs() const;
   std::string differenceOf(const NeedleMonitor& acting) const;
 
   WitnessConfig config_;
   NeedleMonitor monitor_;
-  boost::circular_buffer<Pair> pairs_{32};         ///< the last ones
+  boost::circular_buffer<Pair> pairs_{32};  ///< the last ones
+  long steps_ = 0;
   bool new_acting_ = false, new_witness_ = false;  ///< since the last pair
   std::string difference_;                         ///< of the last pairs
   double axial_ = 0;                               ///< N along the pipette, of the last reading

@@ -149,6 +149,7 @@ void InjectionController::invalidateNeedle(double dt) {
   hold_reason_ = "no valid needle position";
   target_offset_.reset();
   monitor_.skip();
+  witness_.forgetPairs();
   needle_speed_.reset();
   endPulse(hold_reason_);
   if (byHand() || !run_.active() || state_ != OperatingState::kEnabled) return;
@@ -164,6 +165,7 @@ void InjectionController::yieldToRig(const Input& input) {
   target_offset_.reset();
   needle_speed_.reset();
   monitor_.skip();
+  witness_.forgetPairs();
   endPulse(input.rig_hold);
   const bool moved = (*input.needle - *yielded_).norm() > following_error_limit_;
   if (run_.active() && moved) stop(InjectionOutcome::kGuard, input.rig_hold + ", and the needle was moved meanwhile");
@@ -208,6 +210,7 @@ void InjectionController::observe(const Input& input, bool force_valid, double d
   witness_.step(*input.needle, input.axis, input.witness, input.witness_is_new);
   if (!force_valid) {
     monitor_.skip();
+    witness_.forgetPairs();
   } else if (input.force_is_new) {
     monitor_.step(*input.needle, input.axis, *input.force);
   } else {

@@ -22,10 +22,10 @@ class InjectorWait {
   /// Advances by dt (s); `report` empty: no valid state of the injector.
   Status step(const std::optional<InjectorReport>& report, double dt) {
     waiting_time_ += dt;
+    if (report && !report->refusal.empty()) return Status::kRefused;
     if (report) {
       if (!before_) before_ = report->volume;
       volume_ = report->volume - *before_;
-      if (!report->refusal.empty()) return Status::kRefused;
       if (pulse_.volume > 0 && volume_ >= pulse_.volume) return Status::kOver;
       if (worked_ && !report->busy) return complete(*report) ? Status::kOver : Status::kBroken;
       worked_ = worked_ || report->busy;

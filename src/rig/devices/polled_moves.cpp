@@ -144,7 +144,9 @@ bool PolledManipulator::isTooFar(const Eigen::Vector3d& position) const {
 /// Stops a move that is too fast. Where the device is by now is not known before it rests.
 void PolledManipulator::handleTooFast() {
   if (++too_fast_ >= kTries) {
-    return raiseFault("it moves faster than it was told: the line changes bytes; check cable and port, then enable");
+    too_fast_ = 0;
+    return raiseFault(
+        "it moves faster than it was told, or its replies are changed on the line; check cable and port, then enable");
   }
   forgetPosition();
   stopUnheard();

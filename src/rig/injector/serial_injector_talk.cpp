@@ -7,6 +7,7 @@
 #include "rig/injector/serial_injector.h"
 
 namespace microinjection {
+
 void SerialInjector::giveUpPulse(const std::string& reason, bool was_triggered, Refusal refusal) {
   if (!sent_pulse_) return;  // cancelled meanwhile
   std::string what = "pulse " + std::to_string(sent_pulse_->id) + ": " + reason;

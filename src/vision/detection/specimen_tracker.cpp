@@ -9,6 +9,7 @@ namespace {
 constexpr double kNearCell = 1.6;  // over the cell's radius: of a tip this near the gap or the dimple is measured
 const cv::Size kSamples(96, 72);
 constexpr double kSameScene = 0.5;  // correlation of two frames' samples, at least
+constexpr double kBlank = 3;        // deviations of a pixel's noise, of the samples of a frame that shows nothing
 
 PipetteDetectorConfig readPipette(ConfigReader& reader, const std::string& kind, double direction) {
   PipetteDetectorConfig config = PipetteDetectorConfig::read(reader);
@@ -30,7 +31,7 @@ Detection follow(const Detector& detector, const Frame& frame, const Detection& 
   const bool was_there = last.finding.hasValues();
   if (was_there) tracked = detector.track(frame, last, reach);
   const bool followed = tracked.finding.hasValues(), sure = followed && isSure(tracked);
-  if (sure || (was_there && !followed)) pace = SearchPace();
+  if (sure || (!followed && was_there && isSure(last))) pace = SearchPace();
   if (sure || !pace.isDue(followed ? SpecimenTracker::kSearchEvery : SpecimenTracker::kSearchMissingEvery))
     return tracked;
   const Detection found = detector.detect(frame);
@@ -110,11 +111,14 @@ void SearchPace::searched(bool sure) {
   since_ = 0;
 }
 
-/// Compares single pixels of both frames: where one sees noise alone, each frame is another scene.
+/// Compares single pixels of both frames: of what shows noise alone nothing can be said.
 bool SpecimenTracker::isAnotherScene(const Frame& frame) {
   cv::Mat samples;
+  cv::Scalar mean, spread;
   if (frame.refusal().empty()) cv::resize(frame.grey(), samples, kSamples, 0, 0, cv::INTER_NEAREST);
-  const bool another = samples.empty() || samples_.empty() || correlationOf(samples, samples_) < kSameScene;
+  if (!samples.empty()) cv::meanStdDev(samples, mean, spread);
+  const bool blank = !samples.empty() && spread[0] < kBlank * frame.noise();
+  const bool another = samples.empty() || samples_.empty() || (!blank && correlationOf(samples, samples_) < kSameScene);
   samples_ = samples;
   return another;
 }

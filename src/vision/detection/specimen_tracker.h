@@ -51,7 +51,8 @@ class SearchPace {
 
 /// Follows cell and pipettes from frame to frame. What was found is searched near its last place;
 /// what is lost is searched in the whole frame, see SearchPace. A pipette that is uncertain is followed too, and so
-/// is a cell whose diameter is. Everything is searched for in a frame that shows another scene than the last one.
+/// is a cell whose diameter is. In a frame that shows another scene than the last one all is searched that is not
+/// followed surely.
 class SpecimenTracker {
  public:
   explicit SpecimenTracker(const SpecimenTrackerConfig& config);

@@ -28,11 +28,12 @@ YAML::Node withMeasuredSize(const YAML::Node& scene, double diameter, double zon
   return result;
 }
 
+bool hasUnseenZona(const YAML::Node& scene, const CellMeasurement& cell) {
+  return layersOf(scene) == 2 && !cell.zona_thickness;
+}
+
 void requireSeenZona(const YAML::Node& scene, const CellMeasurement& cell) {
-  if (layersOf(scene) == 2 && !cell.zona_thickness)
-    throw ConfigError(
-        "the scene has a zona, and none was found in the image: its thickness would be invented. Take a "
-        "scene of one layer, or an image that shows the zona");
+  if (hasUnseenZona(scene, cell)) throw ConfigError(kUnseenZona);
 }
 
 YAML::Node withMeasuredSize(const YAML::Node& scene, const CellMeasurement& cell) {

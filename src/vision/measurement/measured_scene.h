@@ -15,8 +15,14 @@ YAML::Node withMeasuredSize(const YAML::Node& scene, double diameter, double zon
 /// Throws also for a scene with a zona when none was measured, see requireSeenZona().
 YAML::Node withMeasuredSize(const YAML::Node& scene, const CellMeasurement& cell);
 
-/// Throws ConfigError for a scene of two layers and a measurement without a zona: an image in which the zona was missed
-/// says nothing about its thickness.
+/// Whether a scene of two layers meets a measurement without a zona: an image in which the zona was missed says nothing
+/// about its thickness.
+bool hasUnseenZona(const YAML::Node& scene, const CellMeasurement& cell);
+constexpr char kUnseenZona[] =
+    "the scene has a zona, and none was found in the image: its thickness would be invented. Take a scene of one "
+    "layer, "
+    "or an image that shows the zona";
+/// Throws ConfigError where hasUnseenZona().
 void requireSeenZona(const YAML::Node& scene, const CellMeasurement& cell);
 
 /// Text of a scene file, with what was measured and the file that it was written from.

@@ -130,7 +130,7 @@ class Stream:
     BLOCK = 16  # images
 
     def __init__(self, layout, first, count):
-        self.layout = layout
+        self.layout, self.missing = layout, count
         self.process = subprocess.Popen([layout.program, str(first), str(count)], stdout=subprocess.PIPE)
         self.blocks = queue.Queue(8)
         self.stopped = False
@@ -147,9 +147,12 @@ class Stream:
     def __iter__(self):
         while True:
             images, labels = self.blocks.get()
+            self.missing -= len(images)
             yield from zip(images, labels)
             if len(images) < self.BLOCK:
-                return
+                break
+        if self.missing:
+            sys.exit(f'train.py: {self.layout.program} ended {self.missing} images too early')
 
     def close(self):
         self.stopped = True
@@ -166,20 +169,21 @@ class Pool:
     """Images to learn from: each is shown `repeats` times on average, and replaced by the next."""
 
     def __init__(self, layout, first, count, size, repeats, random):
-        self.repeats, self.random = repeats, random
+        self.random = random
         self.stream = Stream(layout, first, count)
         self.fresh = iter(self.stream)
         pairs = list(itertools.islice(self.fresh, min(size, count)))
         self.images, self.labels = (np.stack(arrays) for arrays in zip(*pairs))
+        self.replaced = (count - len(pairs)) / count / repeats  # images for each that is shown
         self.debt = 0.0
 
     def batch(self, count):
-        """Returns images and labels, or none when all seeds have been used up."""
-        self.debt += count / self.repeats
+        """Returns images and labels."""
+        self.debt += count * self.replaced
         while self.debt >= 1:
             pair = next(self.fresh, None)
             if pair is None:
-                return None
+                break  # all seeds have been used up
             place = self.random.integers(len(self.images))
             self.images[place], self.labels[place] = pair
             self.debt -= 1
@@ -235,8 +239,6 @@ def learn(network, layout, arguments):
     try:
         while done < 1:
             pair = pool.batch(arguments.batch)
-            if pair is None:
-                break
             done = step / steps
             if arguments.minutes:
                 done = max(done, (time.monotonic() - began) / 60 / arguments.minutes)
@@ -292,7 +294,11 @@ def parse_arguments():
     parser.add_argument('--seed', type=int, default=1, help='of the first weights and the order')
     parser.add_argument('--start', type=Path, help='weights (.pt) to go on from')
     parser.add_argument('--validation', type=int, default=300, help='images to judge with')
-    return parser.parse_args()
+    arguments = parser.parse_args()
+    least = max(arguments.batch, math.ceil(arguments.batch / arguments.repeats))
+    if arguments.images < least or arguments.pool < arguments.batch:
+        parser.error(f'--images must be at least {least}, and --pool at least --batch = {arguments.batch}')
+    return arguments
 
 
 def main():

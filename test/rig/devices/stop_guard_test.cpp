@@ -177,8 +177,7 @@ TEST(GuardedRig, NothingMovesWhileThereIsNoGuard) {
 volatile std::sig_atomic_t pauses = 0;
 
 /// A program of its own that streams a velocity, with a pause when it gets SIGUSR1, as an operator makes it who first
-/// clears a fault; it tells `reports` why it is not
-/// ready, and "ready" when it is.
+/// clears a fault; it tells `reports` why it is not ready, and "ready" when it is.
 [[noreturn]] void streamVelocity(const std::string& link, int reports) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   std::signal(SIGUSR1, [](int) { pauses = 1; });
