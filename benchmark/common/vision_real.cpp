@@ -8,6 +8,7 @@
 
 #include "base/cpu_time.h"
 #include "benchmark/common/stated_interval.h"
+#include "benchmark/common/tracked_time.h"
 
 namespace microinjection {
 namespace {
@@ -138,14 +139,12 @@ bool isComplete(const SpecimenView& view) {
   return view.cell.finding.hasValues() && view.injection.finding.hasValues() && view.holding.finding.hasValues();
 }
 
-/// Of a frame that is searched, and of the same frame that is then tracked.
+/// Of a frame that is searched, and of the same frame that is then tracked, see trackedTime().
 void timeRows(const RealImageRows& rows, const MarkedImage& image, SpecimenTracker& tracker, double first) {
   if (image.image.size() != kTimedFrame) return;
   rows.addTime(isComplete(tracker.view()) ? "first_frame" : "first_frame_missing", first);
   const bool complete = isComplete(tracker.view());
-  const double begin = threadCpuTime();
-  tracker.next(Frame(image.image));
-  rows.addTime(complete ? "tracked_frame" : "tracked_frame_missing", threadCpuTime() - begin);
+  rows.addTime(complete ? "tracked_frame" : "tracked_frame_missing", trackedTime(tracker, image.image));
 }
 
 void imageRows(const std::string& set, const MarkedImage& image, RealSetup setup, bool timed, const TakeRow& take) {

@@ -11,6 +11,8 @@
 
 #include "base/cpu_time.h"
 #include "base/errors.h"
+#include "base/exit_status.h"
+#include "base/output_files.h"
 #include "vision/camera/grey_image.h"
 #include "vision/camera/image_file.h"
 #include "vision/segmentation/segmenter.h"
@@ -53,6 +55,7 @@ cv::Mat overlayOf(const cv::Mat& image, const Segmentation& segmentation) {
 }
 
 void run(const std::string& weights, const std::string& path, const std::string& out) {
+  OutputFiles().reads("WEIGHTS", weights).reads("IMAGE", path).writes("OVERLAY", out).check();
   const LoadedImage loaded = loadImage(path);
   if (!loaded.refusal.empty()) throw ConfigError(loaded.refusal);
   const Frame frame(loaded.image);
@@ -75,13 +78,13 @@ int main(int argc, char** argv) {
   cv::setNumThreads(1);
   if (argc != 3 && argc != 4) {
     std::fputs(kUsage, stderr);
-    return 2;
+    return kBadUsage;
   }
   try {
     run(argv[1], argv[2], argc > 3 ? argv[3] : "");
     return 0;
   } catch (const std::exception& error) {
     std::cerr << "segment_image: " << error.what() << '\n';
-    return 1;
+    return kBadUsage;
   }
 }

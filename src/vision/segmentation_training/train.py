@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Trains the segmentation network on rendered images and writes its weights for OpenCV.
 
 The images come from render_training_images, seed by seed, and each is shown a few times, mirrored and turned by half a
