@@ -74,9 +74,16 @@ class GuardedRigTest : public testing::Test {
   void run(int steps) {
     until([&] { return steps-- == 0; });
   }
+  /// Where the machine broke off exchanges again and again, which is a fault, an operator clears it.
+  bool untilReady() {
+    return until([&] {
+      if (driver_->state() == State::kFault) driver_->clearFault();
+      return driver_->state() == State::kReady;
+    });
+  }
   bool moves() { return bench_->device().moves(); }
   void beginMove(const Eigen::Vector3d& place) {
-    ASSERT_TRUE(until([&] { return driver_->state() == State::kReady; })) << driver_->reason();
+    ASSERT_TRUE(untilReady()) << driver_->reason();
     // Commanded again where the machine held this program up so long that the guard was right.
     int moving = 0;  // steps
     ASSERT_TRUE(until([&] {
@@ -90,7 +97,7 @@ class GuardedRigTest : public testing::Test {
   void expectRestUntilCommanded(
       const std::string& why, const std::function<void()>& at_rest = [] {}) {
     ASSERT_TRUE(until([&] { return reasons_.find(why) != std::string::npos; })) << reasons_;
-    ASSERT_TRUE(until([&] { return driver_->state() == State::kReady; })) << driver_->reason();
+    ASSERT_TRUE(untilReady()) << driver_->reason();
     EXPECT_FALSE(moves());
     EXPECT_FALSE(driver_->moving());
     at_rest();
