@@ -20,7 +20,7 @@ class Segmenter {
   /// ConfigError where one is missing, damaged, or does not belong to the other or to this program.
   explicit Segmenter(const std::string& weights);
 
-  /// About 10 ms of one core. The frame must not have a refusal.
+  /// Some 14 ms of one core. The frame must not have a refusal.
   Segmentation segment(const Frame& frame);
 
  private:
