@@ -31,8 +31,9 @@ std::optional<InjectorReport> InjectorLink::report(const ros::Time& now) {
 
 /// The injector tells why its last command was refused: "pulse 5 refused: ...". Other commands may follow.
 void InjectorLink::readRefusal(const std::string& refusal) {
+  if (pending_ == 0 || refusal.empty()) return;
   const std::string begin = "pulse " + std::to_string(message_.id) + " refused: ";
-  if (pending_ == 0 || refusal.compare(0, begin.size(), begin) != 0) return;
+  if (refusal.compare(0, begin.size(), begin) != 0) return;
   refusal_ = refusal.substr(begin.size());
   pending_ = 0;
 }
