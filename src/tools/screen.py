@@ -25,21 +25,22 @@ def display_reachable(name):
 class Screen:
     """The user's display, or an X server without a monitor that draws in software."""
 
-    def __init__(self, log, size=(1280, 960)):
-        """@raises RuntimeError when there is no display and Xvfb does not start."""
+    def __init__(self, log, size=(1280, 960), folder=None):
+        """folder: where a virtual one keeps its picture, in Xvfb_screen0, as xwd writes it.
+        @raises RuntimeError when there is no display and Xvfb does not start."""
         self._server = None
         self.environment = {'LC_ALL': 'C'}  # rviz misreads numbers below 1 under locales with a decimal comma
         name = os.environ.get('DISPLAY')
         self.virtual = not display_reachable(name)
         if self.virtual:
-            name = self._start_server(log, size)
+            name = self._start_server(log, size, folder)
             self.environment['LIBGL_ALWAYS_SOFTWARE'] = '1'
         self.environment['DISPLAY'] = name
 
-    def _start_server(self, log, size):
+    def _start_server(self, log, size, folder):
         reader, writer = os.pipe()
         command = ['Xvfb', '-displayfd', str(writer), '-screen', '0', f'{size[0]}x{size[1]}x24', '+extension', 'GLX',
-                   '-nolisten', 'tcp']
+                   '-nolisten', 'tcp', *(['-fbdir', str(folder)] if folder else [])]
         try:
             self._server = Child(command, log, pass_fds=[writer])
         finally:

@@ -4,9 +4,6 @@ It knows the colours of src/rviz/colours.h and that the buttons stand in a colum
 the guards' bars in one to the right of it. It sees what an operator sees: a button that another window hides is not there.
 """
 
-import subprocess
-
-import matplotlib.image
 import numpy
 
 BUTTONS = ("Enable", "Home", "Approach", "Indent", "Inject", "Withdraw", "Disable")
@@ -22,7 +19,7 @@ LEAST_STOP, LEAST_BUTTON, LEAST_LAMP, LEAST_BAR = 30, 20, 5, 5  # px of height; 
 
 def runs(column, colour):
     """[(first row, last row)] of a column of pixels that has this colour."""
-    same = numpy.concatenate(([False], numpy.all(abs(column - numpy.array(colour)) <= 3, axis=-1), [False]))
+    same = numpy.concatenate(([False], has(column, colour), [False]))
     edges = numpy.flatnonzero(numpy.diff(same.astype(int)))
     return [(int(a), int(b) - 1) for a, b in zip(edges[::2], edges[1::2])]
 
@@ -48,7 +45,8 @@ class Console:
         seen = sorted(seen)[-len(BUTTONS):]
         if len(seen) < len(BUTTONS):
             raise NotSeen(f"there are {len(seen)} buttons")
-        self.place = {name: (left, (a + b) // 2) for name, ((a, b), _) in zip(BUTTONS, seen)}
+        # Beside that column: the pointer is in the picture.
+        self.place = {name: (self.stop[0], (a + b) // 2) for name, ((a, b), _) in zip(BUTTONS, seen)}
         self.offered = {name: offered for name, (_, offered) in zip(BUTTONS, seen)}
         first = seen[0][0][0]
         self.headline = self._lamps(pixels[first - 40:first, left - 8:left + 12])[-1:]
@@ -78,53 +76,47 @@ class Console:
 
 
 def pixels_of(path):
-    return (255 * matplotlib.image.imread(str(path))[..., :3]).round().astype(int)
+    """Rows x columns x (red, green, blue) of a virtual screen's file (xwd, of 32 bits a pixel). @raises NotSeen"""
+    data = numpy.fromfile(path, numpy.uint8)
+    if data.size < 100:
+        raise NotSeen(f"there is no picture in {path}")
+    size, _, _, _, width, height, *_ = header = data[:100].view(">u4").astype(int)
+    line, colours = header[12], header[19]
+    rows = data[size + 12 * colours:][:height * line].reshape(height, line)
+    return rows[:, :4 * width].reshape(height, width, 4)[..., 2::-1].astype(numpy.int16)
 
 
 def has(pixels, colour):
     """Which pixels have this colour."""
-    return numpy.all(abs(pixels - numpy.array(colour)) <= 3, axis=-1)
+    return numpy.all(abs(pixels - numpy.array(colour, numpy.int16)) <= 3, axis=-1)
 
 
-def share_of(colour, path):
+def share_of(colour, pixels):
     """The share of a picture that has this colour."""
-    return float(numpy.mean(has(pixels_of(path), colour)))
+    return float(numpy.mean(has(pixels, colour)))
 
 
-def box_of(colour, path):
+def box_of(colour, pixels):
     """(left, top, right, bottom) of what has this colour. @raises NotSeen"""
-    rows, columns = numpy.nonzero(has(pixels_of(path), colour))
+    rows, columns = numpy.nonzero(has(pixels, colour))
     if rows.size == 0:
         raise NotSeen(f"nothing has the colour {colour}")
     return int(columns.min()), int(rows.min()), int(columns.max()), int(rows.max())
 
 
-def offered_below(row, path):
+def offered_below(row, pixels):
     """Places of the offered buttons below a row, from top to bottom."""
-    pixels = pixels_of(path)[row:]
-    column = int(numpy.argmax(has(pixels, OFFERED).sum(axis=0)))
-    return [(column, row + (a + b) // 2) for a, b in runs(pixels[:, column], OFFERED) if b - a > LEAST_BUTTON]
+    below = pixels[row:]
+    column = int(numpy.argmax(has(below, OFFERED).sum(axis=0)))
+    return [(column, row + (a + b) // 2) for a, b in runs(below[:, column], OFFERED) if b - a > LEAST_BUTTON]
 
 
-def rows_of_offered(path, least):
+def rows_of_offered(pixels, least):
     """[[place, ...], ...] of the offered buttons from top to bottom and from left to right, rows of at least that many."""
-    pixels = pixels_of(path)
     blue = has(pixels, OFFERED)
     rows = {}
-    for row in range(1, len(pixels)):
+    for row in 1 + numpy.flatnonzero(blue[1:].any(axis=1)):
         for a, b in runs(pixels[row], OFFERED):
             if b - a > LEAST_BUTTON and not blue[row - 1, a:b + 1].any():  # its upper edge
-                rows.setdefault(row, []).append(((a + b) // 2, row + LEAST_BUTTON // 2))
+                rows.setdefault(int(row), []).append(((a + b) // 2, int(row) + LEAST_BUTTON // 2))
     return [buttons for _, buttons in sorted(rows.items()) if len(buttons) >= least]
-
-
-def look(path, environment, name="inject"):
-    """The console on the screen. @raises NotSeen"""
-    try:
-        subprocess.run(["import", "-silent", "-window", "root", "-quality", "10", f"png24:{path}"],  # packed little: quick
-                       env=environment, check=True, timeout=60, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                       stderr=subprocess.DEVNULL)
-        pixels = pixels_of(path)
-    except (subprocess.SubprocessError, OSError) as error:
-        raise NotSeen(f"there is no picture: {error}") from error
-    return Console(pixels, name)

@@ -27,8 +27,7 @@ class ConsoleUser:
         os.environ.pop("DISPLAY", None)  # never the user's: the mouse is the test's
         cls.folder = tempfile.TemporaryDirectory()
         logs = Path(cls.folder.name)
-        cls.picture = logs / "screen.png"
-        cls.screen = Screen(logs / "xvfb.log", SIZE)
+        cls.screen = Screen(logs / "xvfb.log", SIZE, logs)
         cls.environment = {**os.environ, **cls.screen.environment}
         cls.rviz = Child(["roslaunch", "cell_microinjection", "session.launch", "cell:=mouse_oocyte", f"console:={name}",
                           "only:=display rviz"], logs / "rviz.log", cls.environment)
@@ -53,11 +52,13 @@ class ConsoleUser:
             if result:
                 return result
             self.assertLess(time.monotonic(), end, f"{what}: not within {patience} s; {self.report()}")
-            time.sleep(0.05)
+            time.sleep(0.1)
 
     def look(self):
+        """The console; `picture`: all that is on the screen."""
         try:
-            return console_eye.look(self.picture, self.environment, self.console)
+            self.picture = console_eye.pixels_of(Path(self.folder.name) / "Xvfb_screen0")
+            return console_eye.Console(self.picture, self.console)
         except console_eye.NotSeen:
             return None
 
