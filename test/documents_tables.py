@@ -106,6 +106,15 @@ def check_scene_keys(project, text):
     return [f'the key {key} is not in the tables' for key in sorted(keys) if not re.search(rf'[`/]{key}[`/]', text)]
 
 
+def check_defaults(project):
+    """What a document calls the default of a session ("the default cell, `NAME`") is that of config/sessions/default.yaml."""
+    keys = {'cell': 'cell', 'rig': 'rig/name', 'hand': 'hand/device', 'motion': 'hand/motion', 'model': 'model'}
+    defaults = dict(flatten(yaml.compose(project.text('config/sessions/default.yaml'))))
+    return [f'{path}: the default {word} is {defaults.get(keys[word])}, not {name}' for path in project.documents
+            for word, name in re.findall(rf'[Tt]he default\s+({"|".join(keys)}),?\s+(?:is\s+)?`(\w+)`', project.text(path))
+            if defaults.get(keys[word]) != name]
+
+
 def reachable(project, start='README.md'):
     """The documents that links lead to."""
     found, waiting = set(), [start]

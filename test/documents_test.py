@@ -11,7 +11,8 @@ from pathlib import Path
 
 from documents_checker import Checker
 from documents_project import Project
-from documents_tables import check_arguments, check_commands, check_nodes, check_parameters, check_scene_keys, check_topics, reachable
+from documents_tables import (check_arguments, check_commands, check_defaults, check_nodes, check_parameters, check_scene_keys, check_topics,
+                              reachable)
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -45,6 +46,9 @@ class TheDocuments(unittest.TestCase):
 
     def test_have_every_parameter_and_its_default(self):
         self.assert_table(check_parameters, 'doc/reference/parameters.md')
+
+    def test_state_the_defaults_of_a_session(self):
+        self.assert_none(check_defaults(self.project))
 
     def test_have_every_topic(self):
         self.assert_table(check_topics, 'doc/reference/topics_and_frames.md')
@@ -185,6 +189,12 @@ See [other](doc/guide/other.md#how-its-rate-is-mostly), `config/bridge.yaml`, `s
         self.assertEqual(check_arguments(project, '## session.launch\n| `rig` | `rig.name` | |\n'), [])
         self.assertIn('rig = rig.name', check_arguments(project, '## session.launch\n| `rig` | `rig` | |\n')[0])
         self.assertIn('the key stretch', check_scene_keys(project, '`mesh/size`')[0])
+
+    def test_reports_a_default_that_is_another(self):
+        self.write('README.md', 'The default rig, `sim`, or the default\nrig is `sim`.\n')
+        self.assertEqual(check_defaults(Project(self.root)), [])
+        self.write('README.md', 'The default rig is `zaber`.\n')
+        self.assertEqual(check_defaults(Project(self.root)), ['README.md: the default rig is sim, not zaber'])
 
     def test_finds_documents_that_no_link_leads_to(self):
         self.write('README.md', '[other](doc/guide/other.md)\n')
