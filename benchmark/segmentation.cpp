@@ -151,9 +151,9 @@ void cellRow(const RealReading& reading, const Segmentation& segmentation, const
 void pipetteRow(const RealReading& reading, const Segmentation& segmentation, const std::string& begin, double time) {
   double nearest = std::nan("");
   for (const ClassRegion& region : segmentation.regions(classesOf(reading.object))) {
-    const auto end = segmentation.endOf(region);
-    if (!end) continue;
-    nearest = cv::norm(*end - cv::Point2d(reading.x, reading.y));
+    const auto way = segmentation.wayOf(region);
+    if (!way) continue;
+    nearest = cv::norm(way->end - cv::Point2d(reading.x, reading.y));
     break;  // the largest
   }
   take(begin + ",," + number(nearest, "%.1f") + "," + number(1e3 * time, "%.1f") + "\n");

@@ -4,6 +4,7 @@
 #include <boost/program_options.hpp>
 #include <cstdio>
 #include <cstdlib>
+#include <memory>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "benchmark/common/vision_cases.h"
 #include "benchmark/common/vision_real.h"
 #include "benchmark/common/vision_summary.h"
+#include "vision/measurement/vision_config.h"
 
 namespace microinjection {
 namespace {
@@ -26,7 +28,8 @@ constexpr char kStacks[] = "real_stacks", kSequences[] = "real_sequences";  // p
 struct VisionOptions {
   int images = 40;
   std::uint64_t seed = 100001;
-  std::string only, contact_sheet;
+  std::string only, contact_sheet, eyes = "both";
+  std::shared_ptr<SecondEye> eye;
   std::vector<std::string> transforms, micrographs;
   bool pipettes_only = false, told = false;
 };
@@ -38,7 +41,7 @@ std::string rowOf(const VisionRow& row) {
   return row.set + ',' + row.image + ',' + row.what + ',' + row.group + ',' + numberText(row.error, "%.4f") + ',' +
          numberText(row.relative, "%.6f") + ',' + numberText(row.deviation, "%.4f") + ',' + flag(row.covered) + ',' +
          flag(row.right) + ',' + (row.wrong ? "1" : "0") + ',' + row.verdict + ',' +
-         numberText(1e3 * row.time, "%.3f") + '\n';
+         numberText(1e3 * row.time, "%.3f") + ",\"" + row.reason + "\"\n";
 }
 
 /// The transforms that --transform names, or all.
@@ -65,22 +68,28 @@ void measureReal(const Micrographs& micrographs, const TakeRow& take) {
   const std::string& only = vision_options.only;
   const bool all = only != kStacks && only != kSequences;
   if (all)
-    realRows(micrographs, chosenTransforms(), vision_options.told ? RealSetup::kTold : RealSetup::kDefault, take);
+    realRows(micrographs, chosenTransforms(), vision_options.told ? RealSetup::kTold : RealSetup::kDefault,
+             vision_options.eye, take);
   if (all && !(vision_options.transforms.empty() && vision_options.micrographs.empty())) return;
   if (only != kSequences) focusStackRows(micrographs, take);
-  if (only != kStacks) sequenceRows(micrographs, take);
+  if (only != kStacks) sequenceRows(micrographs, vision_options.eye, take);
 }
 
 void writeContactSheet(const Micrographs& micrographs) {
   std::vector<unsigned char> file;
-  cv::imencode(".png", contactSheet(micrographs), file);
+  cv::imencode(".png", contactSheet(micrographs, vision_options.eye), file);
   writeFileAtomically(vision_options.contact_sheet, std::string(file.begin(), file.end()));
 }
 
 std::string table() {
+  if (vision_options.eyes != "both" && vision_options.eyes != "geometry")
+    throw ConfigError("--eyes " + vision_options.eyes + ": must be both or geometry");
+  VisionConfig config = VisionConfig::standard();
+  config.eyes = vision_options.eyes;
+  vision_options.eye = config.secondEye();
   PrintedTable rows;
   VisionSummary summary;
-  rows.add("set,image,what,group,error_px,error_relative,deviation_px,covered,right,wrong,verdict,time_ms\n");
+  rows.add("set,image,what,group,error_px,error_relative,deviation_px,covered,right,wrong,verdict,time_ms,reason\n");
   const auto take = [&](const VisionRow& row) {
     rows.add(rowOf(row));
     summary.add(row);
@@ -88,7 +97,8 @@ std::string table() {
   const std::string& only = vision_options.only;
   for (const VisionCondition& condition : visionConditions()) {
     if (!only.empty() && condition.name != only) continue;
-    renderedRows(condition, vision_options.seed, vision_options.images, vision_options.pipettes_only, take);
+    renderedRows(condition, vision_options.seed, vision_options.images, vision_options.pipettes_only,
+                 vision_options.eye, take);
   }
   const char* folder = std::getenv(kFolderVariable);
   if (folder != nullptr && (only.empty() || isRealSet(only))) {
@@ -121,10 +131,11 @@ int main(int argc, char** argv) {
       "real images: under these transforms only, such as identity");
   add("micrograph", po::value(&options.micrographs)->multitoken(),
       "real images: those only whose file has one of these parts in its name, such as vampy/ or stack6.8");
+  add("eyes", po::value(&options.eyes)->default_value(options.eyes),
+      "both: a network tells where things are; geometry: without it");
   add("told", po::bool_switch(&options.told),
       "real images: look and directions of the pipettes are those of the image, not the default ones");
-  add("contact-sheet", po::value(&options.contact_sheet),
-      "PNG to write: the real images with what is found in them, told look and directions");
+  add("contact-sheet", po::value(&options.contact_sheet), "PNG to write: the real images with what is found in them");
   return microinjection::benchMain(argc, argv,
                                    "bench_vision: errors of the vision on rendered images, and on real ones where "
                                    "MICROINJECTION_MICROGRAPHS names their folder.",

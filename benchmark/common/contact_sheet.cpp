@@ -19,9 +19,9 @@ void writeLine(cv::Mat& image, const std::string& words, int y) {
   cv::putText(image, words, {4, y}, cv::FONT_HERSHEY_SIMPLEX, 0.38, cv::Scalar(255, 255, 255), 1, cv::LINE_AA);
 }
 
-cv::Mat thumbnailOf(const MarkedImage& image) {
+cv::Mat thumbnailOf(const MarkedImage& image, const std::shared_ptr<SecondEye>& eye) {
   const Frame frame(image.image);
-  SpecimenTracker tracker(trackerConfig(image, RealSetup::kTold));
+  SpecimenTracker tracker(trackerConfig(image, eye ? RealSetup::kDefault : RealSetup::kTold), eye);
   const SpecimenView& view = tracker.next(frame);
   const cv::Mat drawn = drawOverlay(frame, view.overlay());
   const double scale = std::min(1.0 * kThumbnail.width / drawn.cols, 1.0 * kThumbnail.height / drawn.rows);
@@ -40,14 +40,14 @@ cv::Mat thumbnailOf(const MarkedImage& image) {
 
 }  // namespace
 
-cv::Mat contactSheet(const Micrographs& micrographs) {
+cv::Mat contactSheet(const Micrographs& micrographs, const std::shared_ptr<SecondEye>& eye) {
   const int rows = (static_cast<int>(micrographs.names().size()) + kColumns - 1) / kColumns;
   const cv::Size cell(kThumbnail.width, kThumbnail.height + kText);
   cv::Mat sheet(rows * cell.height, kColumns * cell.width, CV_8UC3, cv::Scalar(0, 0, 0));
   int number = 0;
   for (const std::string& name : micrographs.names()) {
     const cv::Point corner((number % kColumns) * cell.width, (number / kColumns) * cell.height);
-    thumbnailOf(micrographs.load(name)).copyTo(sheet(cv::Rect(corner, cell)));
+    thumbnailOf(micrographs.load(name), eye).copyTo(sheet(cv::Rect(corner, cell)));
     ++number;
   }
   return sheet;

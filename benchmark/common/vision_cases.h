@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "benchmark/common/vision_row.h"
+#include "vision/detection/proposal.h"
 #include "vision/microscope/microscope_config.h"
 #include "vision/microscope/scene_draw.h"
 
@@ -22,8 +24,9 @@ std::vector<VisionCondition> visionConditions();
 
 /// Rows of `images` rendered images, with the seeds from `first` on. The constants were chosen with seeds
 /// below 100000.
+/// @param eye  none: geometry alone
 /// @param pipettes_only  cells and dimples are not measured, which takes most of the time
 void renderedRows(const VisionCondition& condition, std::uint64_t first, int images, bool pipettes_only,
-                  const TakeRow& take);
+                  const std::shared_ptr<SecondEye>& eye, const TakeRow& take);
 
 }  // namespace microinjection

@@ -65,6 +65,7 @@ class RealImageRows {
     row.found = finding.hasValues();
     row.sure = finding.isFound();
     row.verdict = nameOf(finding.verdict);
+    row.reason = finding.reason;
     return row;
   }
 
@@ -147,9 +148,10 @@ void timeRows(const RealImageRows& rows, const MarkedImage& image, SpecimenTrack
   rows.addTime(complete ? "tracked_frame" : "tracked_frame_missing", trackedTime(tracker, image.image));
 }
 
-void imageRows(const std::string& set, const MarkedImage& image, RealSetup setup, bool timed, const TakeRow& take) {
+void imageRows(const std::string& set, const MarkedImage& image, RealSetup setup, const std::shared_ptr<SecondEye>& eye,
+               bool timed, const TakeRow& take) {
   const RealImageRows rows(set, image.name, take);
-  SpecimenTracker tracker(trackerConfig(image, setup));
+  SpecimenTracker tracker(trackerConfig(image, setup), eye);
   const double begin = threadCpuTime();
   const SpecimenView view = tracker.next(Frame(image.image));
   const double time = threadCpuTime() - begin;
@@ -166,19 +168,20 @@ SpecimenTrackerConfig trackerConfig(const MarkedImage& image, RealSetup setup) {
   SpecimenTrackerConfig config = SpecimenTrackerConfig::read(nothing);
   if (setup == RealSetup::kDefault) return config;
   config.cell.look = image.look;
+  config.injection.any_direction = config.holding.any_direction = false;
   config.injection.direction = image.needle;
   config.holding.direction = image.holding;
   return config;
 }
 
 void realRows(const Micrographs& micrographs, const std::vector<ImageTransform>& transforms, RealSetup setup,
-              const TakeRow& take) {
+              const std::shared_ptr<SecondEye>& eye, const TakeRow& take) {
   cv::setNumThreads(1);
   for (const std::string& name : micrographs.names()) {
     const MarkedImage original = micrographs.load(name);
     for (const ImageTransform& each : transforms) {
       const std::string set = (setup == RealSetup::kTold ? "told/" : "real/") + each.name;
-      imageRows(set, each.apply(original), setup, each.name == "identity", take);
+      imageRows(set, each.apply(original), setup, eye, each.name == "identity", take);
     }
   }
 }

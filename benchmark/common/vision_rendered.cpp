@@ -7,8 +7,7 @@
 #include "benchmark/common/stated_interval.h"
 #include "benchmark/common/tracked_time.h"
 #include "benchmark/common/vision_cases.h"
-#include "vision/detection/cell_detector.h"
-#include "vision/detection/pipette_detector.h"
+#include "vision/detection/frame_search.h"
 #include "vision/detection/specimen_tracker.h"
 #include "vision/microscope/microscope.h"
 
@@ -79,6 +78,7 @@ class ImageRows {
     row.found = finding.hasValues();
     row.sure = finding.isFound();
     row.verdict = nameOf(finding.verdict);
+    row.reason = finding.reason;
     row.time = time;
     return row;
   }
@@ -120,14 +120,14 @@ void polarBodyRow(const ImageRows& rows, const PolarBody& body, const CellTruth&
 }
 
 PipetteDetection pipetteRows(const ImageRows& rows, const std::string& what, const Frame& frame, const CameraView& view,
-                             const std::optional<PipetteTruth>& truth, double goal) {
+                             FrameSearch& search, const std::optional<PipetteTruth>& truth, double goal) {
   PipetteDetectorConfig config;
   config.kind = what == "tip" ? "injection" : "holding";
   const Eigen::Vector2d shaft = view.imageDirection({0, what == "tip" ? 1 : -1});
   config.direction = std::atan2(shaft.y(), shaft.x());
   const PipetteDetector detector(config);
   double time = 0, following = 0;
-  const PipetteDetection found = timed(time, [&] { return detector.detect(frame); });
+  const PipetteDetection found = timed(time, [&] { return search.pipette(detector); });
   if (!truth) rows.addAbsent(what, found.finding, time);
   if (!truth || !frame.contains({truth->end.x(), truth->end.y()}, 8)) return found;
   rows.add(what, found.finding, stated(found.end, truth->end, found.covariance), 0, goal, time);
@@ -148,9 +148,9 @@ struct SeenCell {
 };
 
 /// The cell without the needle.
-SeenCell seenCell(const CellDetector& detector, const Frame& frame) {
+SeenCell seenCell(const CellDetector& detector, const Frame& frame, FrameSearch& search) {
   SeenCell seen;
-  seen.found.cell = timed(seen.time, [&] { return detector.detect(frame); });
+  seen.found.cell = timed(seen.time, [&] { return search.cell(detector); });
   if (seen.found.cell.finding.hasValues())
     seen.tracked.cell = timed(seen.following, [&] { return detector.track(frame, seen.found.cell, 8); });
   return seen;
@@ -190,7 +190,7 @@ void seenRows(const ImageRows& rows, const SeenCell& seen, const SceneTruth& tru
 /// Times of whole frames, as the node vision has them: of the first one, which is searched, and of the same one again,
 /// in which what was found is tracked. With `_missing` where cell, tip or mouth was not found.
 void frameTimeRows(const ImageRows& rows, const CellDetectorConfig& cell, const CameraView& view,
-                   const cv::Mat& image) {
+                   const std::shared_ptr<SecondEye>& eye, const cv::Mat& image) {
   ConfigReader nothing(YAML::Node(YAML::NodeType::Map), "");
   SpecimenTrackerConfig config = SpecimenTrackerConfig::read(nothing);
   config.cell = cell;
@@ -200,7 +200,7 @@ void frameTimeRows(const ImageRows& rows, const CellDetectorConfig& cell, const 
   };
   config.injection.direction = direction(1);
   config.holding.direction = direction(-1);
-  SpecimenTracker tracker(config);
+  SpecimenTracker tracker(config, eye);
   double first = 0;
   const SpecimenView seen = timed(first, [&] { return tracker.next(Frame(image)); });
   const bool complete =
@@ -212,7 +212,7 @@ void frameTimeRows(const ImageRows& rows, const CellDetectorConfig& cell, const 
 }  // namespace
 
 void renderedRows(const VisionCondition& condition, std::uint64_t first, int images, bool pipettes_only,
-                  const TakeRow& take) {
+                  const std::shared_ptr<SecondEye>& eye, const TakeRow& take) {
   cv::setNumThreads(1);
   Microscope microscope(condition.microscope);
   CellDetectorConfig config;
@@ -228,14 +228,15 @@ void renderedRows(const VisionCondition& condition, std::uint64_t first, int ima
     const ImageRows rows(condition.name, seed, take);
     double reading = 0;
     const Frame frame = timed(reading, [&] { return Frame(image); });
+    FrameSearch search(frame, eye.get());
     SeenCell seen;
-    if (!pipettes_only) seen = seenCell(detector, frame);
-    const PipetteDetection needle = pipetteRows(rows, "tip", frame, view, drawn.truth.injection, kTip);
-    pipetteRows(rows, "mouth", frame, view, drawn.truth.holding, kMouth);
+    if (!pipettes_only) seen = seenCell(detector, frame, search);
+    const PipetteDetection needle = pipetteRows(rows, "tip", frame, view, search, drawn.truth.injection, kTip);
+    pipetteRows(rows, "mouth", frame, view, search, drawn.truth.holding, kMouth);
     if (pipettes_only) continue;
     addNeedle(frame, needle, seen);
     seenRows(rows, seen, drawn.truth, reading);
-    frameTimeRows(rows, config, view, image);
+    frameTimeRows(rows, config, view, eye, image);
   }
 }
 

@@ -19,6 +19,7 @@ struct VisionRow {
   std::optional<bool> right{};    ///< sure, and within the limit; none: no limit holds for it
   std::optional<bool> covered{};  ///< the truth is in the stated interval of 95 %; none: none was stated
   std::string verdict{};          ///< empty: a time alone
+  std::string reason{};           ///< of a verdict that is not found
   double time = std::numeric_limits<double>::quiet_NaN();  ///< s of processor time
   std::string group{};  ///< of a real image's row: readable, far (there, and need not be found), absent, unread
 };

@@ -15,15 +15,16 @@ VisionRow sequenceRow(const std::string& set, const std::string& image, const st
   row.found = finding.hasValues();
   row.sure = finding.isFound();
   row.verdict = nameOf(finding.verdict);
+  row.reason = finding.reason;
   return row;
 }
 
 void heldRows(const Micrographs& micrographs, const std::string& set, const std::vector<int>& stages,
-              const TakeRow& take) {
+              const std::shared_ptr<SecondEye>& eye, const TakeRow& take) {
   const auto imageOf = [&](int stage) {
     return micrographs.load("holypipette/stack" + std::to_string(stage) + ".8.jpg");
   };
-  SpecimenTracker tracker(trackerConfig(imageOf(stages.front()), RealSetup::kTold));
+  SpecimenTracker tracker(trackerConfig(imageOf(stages.front()), RealSetup::kTold), eye);
   for (const int stage : stages) {
     const MarkedImage image = imageOf(stage);
     const Frame frame(image.image);
@@ -48,9 +49,9 @@ void heldRows(const Micrographs& micrographs, const std::string& set, const std:
 
 }  // namespace
 
-void sequenceRows(const Micrographs& micrographs, const TakeRow& take) {
-  heldRows(micrographs, "real_retreat", {6, 3, 0}, take);
-  heldRows(micrographs, "real_advance", {0, 3, 6}, take);
+void sequenceRows(const Micrographs& micrographs, const std::shared_ptr<SecondEye>& eye, const TakeRow& take) {
+  heldRows(micrographs, "real_retreat", {6, 3, 0}, eye, take);
+  heldRows(micrographs, "real_advance", {0, 3, 6}, eye, take);
 }
 
 }  // namespace microinjection

@@ -99,6 +99,14 @@ void printLengths(const CellMeasurement& cell, const CellPlane& plane) {
     std::cout << "not known: " << verdictOf(body.finding) << '\n';
 }
 
+/// What else is in the image, a line each.
+void printOthers(const CellDetection& cell, double pixel_size) {
+  for (const OtherThing& thing : cell.others)
+    std::cout << "beside it: " << thing.kind << " at " << std::lround(thing.ellipse.centre.x) << ", "
+              << std::lround(thing.ellipse.centre.y) << " px, about "
+              << std::lround(1e6 * pixel_size * thing.ellipse.meanDiameter()) << " um\n";
+}
+
 /// What an uncertain cell has: numbers without intervals, since nobody knows by how much they are off.
 void printUncertain(const CellDetection& cell, double pixel_size) {
   if (!cell.size.hasValues()) return;
@@ -128,13 +136,14 @@ int run(int argc, char** argv) {
   if (!arguments.out.empty()) requireWritableFolder(fs::absolute(arguments.out).parent_path());
   std::string warning;
   arguments.vision.pixelSize({0, 0}, warning);  // so that it is known to be missing before the search
-  SharpestPlane search(arguments.vision.tracker);
+  SharpestPlane search(arguments.vision.tracker, arguments.vision.secondEye());
   addImages(arguments.input, search);
   const CellPlane& plane = *search.best();
   const double pixel_size = arguments.vision.pixelSize({plane.image.cols, plane.image.rows}, warning);
   if (!warning.empty()) std::cerr << "measure_cell: " << warning << '\n';
   printPlane(plane, search);
   if (!arguments.overlay.empty()) writeOverlay(arguments.overlay, plane);
+  printOthers(plane.view.cell, pixel_size);
   CellReadings readings(1);
   readings.add(plane.view);
   std::string reason;

@@ -52,7 +52,7 @@ VisionNode::Parameters VisionNode::Parameters::read(const Bus& bus) {
 VisionNode::VisionNode(Bus& bus)
     : bus_(bus),
       parameters_(Parameters::read(bus)),
-      tracker_(parameters_.vision.tracker),
+      tracker_(parameters_.vision.tracker, parameters_.vision.secondEye()),
       served_(bus, parameters_.vision.serve_timeout),
       state_(bus.advertise<cell_microinjection::VisionState>("vision/state", 1)),
       overlay_(bus.advertiseImages("vision/image_overlay", 1)),

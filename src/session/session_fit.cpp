@@ -152,9 +152,12 @@ class Fit {
     set(node, pipette + second, roundedParameter(radius * ratio));
   }
 
-  /// The pixel size of the virtual microscope is known, and its calibration is not that of a real camera.
+  /// Of the virtual microscope the pixel size and the pipettes' directions are known, and its calibration is not that of a real camera.
   void followMicroscope() {
     setParameter(changed_, "vision/pixel_size", get(kMicroscope, "camera/pixel_size"));
+    const double turned = read(kMicroscope, "camera/angle");  // counter-clockwise, and directions count clockwise
+    set("vision", "injection_pipette/direction", roundedParameter(-M_PI / 2 - turned));
+    set("vision", "holding_pipette/direction", roundedParameter(M_PI / 2 - turned));
     const YAML::Node file = textValue(userDataFile("calibration_simulated.yaml"));
     setParameter(changed_, "calibration/file", file);
     setParameter(changed_, "vision/calibration", file);

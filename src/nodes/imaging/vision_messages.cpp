@@ -37,7 +37,7 @@ cell_microinjection::CellInImage toMessage(const CellDetection& cell) {
   const PolarBody& body = cell.polar_body;
   message.polar_body_angle = body.finding.isFound() ? body.angle : kNotMeasured;
   message.polar_body_angle_deviation = body.finding.isFound() ? body.deviation : kNotMeasured;
-  message.others = static_cast<std::uint32_t>(cell.others.size());
+  message.others = static_cast<std::uint32_t>(cell.otherCells());
   return message;
 }
 

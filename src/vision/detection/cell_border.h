@@ -16,9 +16,10 @@ constexpr double kSureCentre = 0.3;
 /// A closed border of a cell: its ellipse, and where it was seen.
 struct CellBorder {
   Finding finding;
-  bool centred = false;  ///< uncertain, but what displaces the border does so on all sides: its centre is sure
-  Ellipse ellipse;       ///< px
-  Ellipse line;          ///< px, by its own line alone, which is followed from frame to frame
+  bool centred = false;     ///< uncertain, but what displaces the border does so on all sides: its centre is sure
+  bool which_line = false;  ///< uncertain, since it may be another one of several lines
+  Ellipse ellipse;          ///< px
+  Ellipse line;             ///< px, by its own line alone, which is followed from frame to frame
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of centre x, centre y, mean diameter, px^2
   double residual = 0;                                   ///< px rms, of the points that the ellipse describes
   double coverage = 0;      ///< share of the directions within the image in which the border is on the ellipse

@@ -22,6 +22,49 @@ bool isWithin(const CellDetection& found, const Ellipse& other) {
   return cv::norm(other.centre - first.centre) < 0.4 * (other.meanDiameter() + first.meanDiameter());
 }
 
+constexpr double kAgreedSize = 0.11, kAgreedPlace = 0.06;  // of the diameter
+constexpr double kThinZona = 1.2;        // of the ooplasm's diameter, where the network overlooks a zona
+constexpr double kConfirmedSize = 0.05;  // of the diameter, that tells one line from the next
+constexpr double kConfirmed = 0.006;     // of the diameter, standard deviation
+
+/// Which of several lines a border is, the second eye knows. Where that line is, is as sure as a fringe of it is wide.
+void confirm(CellBorder& border) {
+  if (!border.which_line || border.finding.verdict != Verdict::kUncertain) return;
+  const double deviation = kConfirmed * border.ellipse.meanDiameter();
+  border.finding = Finding::found();
+  border.covariance += Eigen::Vector3d(0.25, 0.25, 1).asDiagonal() * (deviation * deviation);
+}
+
+bool isWhole(const Frame& frame, const Ellipse& outline) {
+  constexpr int kPlaces = 72;
+  int inside = 0;
+  for (int i = 0; i < kPlaces; ++i) inside += frame.contains(outline.at(2 * M_PI * i / kPlaces)) ? 1 : 0;
+  return inside >= (1 - kLeastOutside) * kPlaces;
+}
+
+bool isSame(const Ellipse& seen, const Ellipse& measured, double size = kAgreedSize) {
+  const double diameter = measured.meanDiameter();
+  return std::abs(seen.meanDiameter() - diameter) < size * diameter &&
+         cv::norm(seen.centre - measured.centre) < kAgreedPlace * diameter;
+}
+
+/// Whether the outermost border is where a second eye sees it.
+bool hasSameOutline(const ProposedCell& proposed, const CellLayers& layers, double size = kAgreedSize) {
+  const bool zona = layers.zona_outer.finding.hasValues();
+  return isSame(proposed.zona ? *proposed.zona : proposed.ooplasm, (zona ? layers.zona_outer : layers.ooplasm).ellipse,
+                size);
+}
+
+/// What a second eye has against what was measured. It overlooks thin zonae.
+Finding objectionOf(const ProposedCell& proposed, const CellLayers& layers) {
+  const bool zona = layers.zona_outer.finding.hasValues();
+  if (hasSameOutline(proposed, layers)) return Finding::found();
+  if (proposed.zona && !zona) return Finding::uncertain("a network sees a zona, and its border was not found");
+  if (proposed.zona) return Finding::uncertain("a network sees the zona's border elsewhere");
+  if (isSame(proposed.ooplasm, layers.ooplasm.ellipse)) return Finding::found();
+  return Finding::uncertain("a network sees the cell's border elsewhere");
+}
+
 }  // namespace
 
 CellDetectorConfig CellDetectorConfig::read(ConfigReader& reader) {
@@ -62,7 +105,7 @@ CellDetection CellDetector::detect(const Frame& frame) const {
   for (const CellBorder& border : borders) {
     if (detection.finding.hasValues() && isWithin(detection, border.ellipse)) continue;
     const CellLayers layers = findLayers(frame, border, config_.look, config_.largest_diameter);
-    const Finding finding = judge(frame, layers);
+    const Finding finding = judgeRound(frame, layers);
     if (!finding.hasValues()) {
       if (!detection.finding.hasValues()) detection.finding = detection.size = finding;
       continue;
@@ -78,6 +121,60 @@ CellDetection CellDetector::detect(const Frame& frame) const {
   return detection;
 }
 
+std::optional<CellDetector::Seen> CellDetector::seenAt(const Frame& frame, const ProposedCell& proposed) const {
+  std::vector<CellBorder> borders;
+  for (const Ellipse& ellipse : {proposed.ooplasm, proposed.zona.value_or(scaled(proposed.ooplasm, kThinZona))}) {
+    const CellBorder border = findMainBorder(frame, ellipse.centre, 0.5 * ellipse.meanDiameter(), config_.look);
+    if (isClear(border)) borders.push_back(border);
+  }
+  std::stable_sort(borders.begin(), borders.end(),
+                   [](const auto& a, const auto& b) { return worthOf(a) > worthOf(b); });
+  std::optional<Seen> best;
+  for (const CellBorder& border : borders) {
+    Seen seen;
+    seen.layers = findLayers(frame, border, config_.look, config_.largest_diameter);
+    seen.second = objectionOf(proposed, seen.layers);
+    const bool zona = seen.layers.zona_outer.finding.hasValues();
+    seen.confirmed = zona && proposed.zona && hasSameOutline(proposed, seen.layers, kConfirmedSize);
+    if (seen.confirmed) confirm(seen.layers.zona_outer);
+    seen.finding = judge(seen.layers);
+    if (!best || seen.rank() > best->rank()) best = seen;
+    if (seen.rank() == Seen::kBest) break;
+  }
+  return best;
+}
+
+CellDetection CellDetector::detect(const Frame& frame, const Proposal& proposal) const {
+  CellDetection detection;
+  detection.finding = detection.size = Finding::notFound("a network sees no cell");
+  std::vector<OtherThing> skipped;
+  for (const ProposedCell& proposed : proposal.cells) {
+    const Ellipse& outer = proposed.zona ? *proposed.zona : proposed.ooplasm;
+    if (detection.finding.hasValues()) {
+      if (!isWithin(detection, outer) && isWhole(frame, outer))
+        detection.others.push_back({proposed.zona ? "cell with zona" : "cell", outer});
+      continue;
+    }
+    const std::optional<Seen> seen = seenAt(frame, proposed);
+    if (!seen || !seen->finding.hasValues()) {
+      detection.finding = detection.size =
+          seen ? seen->finding : Finding::notFound("a network sees a cell without a clear border");
+      if (proposed.held) return detection;  // another one would be taken for the cell
+      if (isWhole(frame, outer)) skipped.push_back({proposed.zona ? "cell with zona" : "cell", outer});
+      continue;
+    }
+    detection.held = proposed.held;
+    detection.second = seen->second;
+    detection.confirmed = seen->confirmed;
+    take(detection, seen->layers, seen->finding);
+    detection.polar_body = findPolarBody(frame, seen->layers, config_.look);
+  }
+  if (detection.finding.hasValues()) detection.others.insert(detection.others.end(), skipped.begin(), skipped.end());
+  detection.others.insert(detection.others.end(), proposal.things.begin(), proposal.things.end());
+  doubtOneOfTwo(detection);
+  return detection;
+}
+
 CellDetection CellDetector::track(const Frame& frame, const CellDetection& previous, double reach) const {
   CellDetection detection;
   detection.finding = detection.size = Finding::notFound("there is no earlier cell to follow");
@@ -87,14 +184,18 @@ CellDetection CellDetector::track(const Frame& frame, const CellDetection& previ
   before.ooplasm = previous.ooplasm;
   before.zona_inner = previous.zona_inner;
   before.zona_outer = previous.zona_outer;
-  const CellLayers layers = followLayers(frame, before, config_.look, reach);
+  detection.held = previous.held;
+  detection.second = previous.second;
+  detection.confirmed = previous.confirmed;
+  CellLayers layers = followLayers(frame, before, config_.look, reach);
   const bool lost = !layers.ooplasm.finding.hasValues() ||
                     (previous.zona_outer.finding.hasValues() && !layers.zona_outer.finding.hasValues());
   if (lost) {
     detection.finding = detection.size = Finding::notFound("the cell is lost: its border is not where it was");
     return detection;
   }
-  take(detection, layers, judge(frame, layers));
+  if (previous.confirmed) confirm(layers.zona_outer);
+  take(detection, layers, previous.second ? judge(layers) : judgeRound(frame, layers));
   // Others are searched in the whole frame only.
   detection.others = previous.others;
   doubtOneOfTwo(detection);
@@ -112,10 +213,13 @@ void CellDetector::take(CellDetection& detection, const CellLayers& layers, cons
   detection.finding = detection.size = size;
   const bool centred = outer.centred && std::sqrt(detection.centre_covariance.trace()) < kSureCentre;
   if (size.hasValues() && centred && size.reason == outer.finding.reason) detection.finding = Finding::found();
+  for (Finding* certain : {&detection.finding, &detection.size}) {
+    if (certain->isFound() && detection.second) *certain = *detection.second;
+  }
 }
 
 void CellDetector::doubtOneOfTwo(CellDetection& detection) {
-  if (detection.others.empty()) return;
+  if (detection.held || detection.otherCells() == 0) return;
   for (Finding* certain : {&detection.finding, &detection.size}) {
     if (certain->isFound()) *certain = Finding::uncertain(CellDetection::kTwoCells);
   }
@@ -127,25 +231,31 @@ bool CellDetector::isClear(const CellBorder& border) const {
          border.ellipse.semi_axes[0] < kMostElongated * border.ellipse.semi_axes[1];
 }
 
-Finding CellDetector::judge(const Frame& frame, const CellLayers& layers) const {
+Finding CellDetector::judge(const CellLayers& layers) const {
   const CellBorder& outer = layers.zona_outer.finding.hasValues() ? layers.zona_outer : layers.ooplasm;
   const double diameter = outer.ellipse.meanDiameter();
   if (diameter < config_.smallest_diameter || diameter > config_.largest_diameter) {
     return Finding::notFound("no closed border of the size that is asked for");
   }
-  if (isBubble(frame, layers)) return Finding::notFound(kBubble);
-  CellLayers without_zona;  // rings of light in a bubble look like a zona
-  without_zona.main = layers.main;
-  if (isBubble(frame, without_zona)) return Finding::uncertain("the rim is as wide and dark as that of a bubble");
   if (outer.outside > kMostOutside) return Finding::notFound("half of the border is outside of the image");
   if (outer.outside > config_.most_outside) return Finding::uncertain("a part of the border is outside of the image");
   return outer.finding;
 }
 
+Finding CellDetector::judgeRound(const Frame& frame, const CellLayers& layers) const {
+  const Finding finding = judge(layers);
+  if (!finding.hasValues()) return finding;
+  if (isBubble(frame, layers)) return Finding::notFound(kBubble);
+  CellLayers without_zona;  // rings of light in a bubble look like a zona
+  without_zona.main = layers.main;
+  if (isBubble(frame, without_zona)) return Finding::uncertain("the rim is as wide and dark as that of a bubble");
+  return finding;
+}
+
 void CellDetector::addOther(CellDetection& detection, const CellLayers& layers) {
   const CellBorder& outer = layers.zona_outer.finding.hasValues() ? layers.zona_outer : layers.ooplasm;
   if (isWithin(detection, outer.ellipse)) return;
-  if (outer.outside < kLeastOutside) detection.others.push_back(outer.ellipse);
+  if (outer.outside < kLeastOutside) detection.others.push_back({"cell", outer.ellipse});
 }
 
 }  // namespace microinjection

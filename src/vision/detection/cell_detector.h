@@ -3,12 +3,14 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/config_reader.h"
 #include "vision/detection/cell_layers.h"
 #include "vision/detection/polar_body.h"
+#include "vision/detection/proposal.h"
 
 namespace microinjection {
 
@@ -29,19 +31,27 @@ struct CellDetection {
   Eigen::Matrix2d centre_covariance = Eigen::Matrix2d::Zero();  ///< px^2
   CellBorder zona_outer, zona_inner, ooplasm;                   ///< a cell without zona has only the last
   PolarBody polar_body;
-  std::vector<Ellipse> others;  ///< other whole cells
+  std::vector<OtherThing> others;  ///< other whole cells; with a second eye bubbles and debris, too
+  bool held = false;               ///< a second eye sees it at the holding pipette: others do not make it uncertain
+  std::optional<Finding> second;   ///< whether a second eye has nothing against it; none: there was none
+  bool confirmed = false;          ///< it sees a zona with its outer border in the same place
 
-  /// Removes the others for which `part_of_another_thing` is true. Without others the one cell is
+  /// Removes the others for whose ellipse `part_of_another_thing` is true. Without other cells the one cell is
   /// certain again.
   template <typename Predicate>
   void dismissOthers(const Predicate& part_of_another_thing) {
-    others.erase(std::remove_if(others.begin(), others.end(), part_of_another_thing), others.end());
+    const auto isPart = [&](const OtherThing& thing) { return part_of_another_thing(thing.ellipse); };
+    others.erase(std::remove_if(others.begin(), others.end(), isPart), others.end());
     for (Finding* doubted : {&finding, &size}) {
-      if (others.empty() && doubted->reason == kTwoCells) *doubted = Finding::found();
+      if (otherCells() == 0 && doubted->reason == kTwoCells) *doubted = Finding::found();
     }
   }
 
   static constexpr const char* kTwoCells = "two cells: the clearest is given";
+
+  std::ptrdiff_t otherCells() const {
+    return std::count_if(others.begin(), others.end(), [](const OtherThing& thing) { return thing.isCell(); });
+  }
 
   /// The outermost border that was found.
   const CellBorder& outer() const { return zona_outer.finding.hasValues() ? zona_outer : ooplasm; }
@@ -57,14 +67,31 @@ class CellDetector {
 
   /// Searches the whole frame.
   CellDetection detect(const Frame& frame) const;
+  /// Searches where a second eye sees cells. A cell is found where both eyes see the same: its size, its place, and
+  /// whether it has a zona.
+  CellDetection detect(const Frame& frame, const Proposal& proposal) const;
   /// Searches near a cell that was found in an earlier frame: moved by at most `reach` (px), of
   /// nearly the same size.
   CellDetection track(const Frame& frame, const CellDetection& previous, double reach) const;
 
  private:
+  struct Seen {
+    CellLayers layers;
+    Finding finding;  ///< of the diameter
+    Finding second;   ///< whether the second eye has nothing against it
+    bool confirmed = false;
+    static constexpr int kBest = 3;
+    int rank() const {
+      return (second.isFound() ? 2 : 0) + (finding.isFound() ? 1 : 0) - (finding.hasValues() ? 0 : 4);
+    }
+  };
+
+  std::optional<Seen> seenAt(const Frame& frame, const ProposedCell& proposed) const;
   bool isClear(const CellBorder& border) const;
-  /// Verdict of the diameter.
-  Finding judge(const Frame& frame, const CellLayers& layers) const;
+  /// Verdict of the diameter, but for what a bubble is.
+  Finding judge(const CellLayers& layers) const;
+  /// The same of what may be a bubble.
+  Finding judgeRound(const Frame& frame, const CellLayers& layers) const;
   /// @param size  verdict of the diameter
   static void take(CellDetection& detection, const CellLayers& layers, const Finding& size);
   static void doubtOneOfTwo(CellDetection& detection);

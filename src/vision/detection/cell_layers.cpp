@@ -100,6 +100,7 @@ void doubtWithinRing(const Frame& frame, const std::string& look, CellBorder& ou
   if (!isRing(beyond) || !clear || beyond.polarity == Polarity::kFalling) return;
   outer.finding = Finding::uncertain("a ring is seen outside of the border: it may be the zona's inner one");
   outer.centred = false;
+  outer.which_line = true;
 }
 
 /// Takes the certainty in DIC from an outer border that is another line on each side.
@@ -107,6 +108,7 @@ void doubtMixedLines(const Frame& frame, const std::string& look, CellBorder& ou
   if (look != "dic" || !outer.finding.isFound() || linesOutside(frame, outer.ellipse) < kMixedLines) return;
   outer.finding = Finding::uncertain("in DIC the border may be another line on each side");
   outer.centred = false;
+  outer.which_line = true;
 }
 
 void doubtOuter(const Frame& frame, const std::string& look, CellBorder& outer, double largest) {
@@ -166,8 +168,10 @@ CellLayers findLayers(const Frame& frame, const CellBorder& main, const std::str
     const bool ring = isRing(inside) || (isSecondBorder(inside) && inside.significance > kBorderSignificance) ||
                       (isRing(beyond) && beyond.polarity != Polarity::kFalling);
     // The ooplasm is not always in the middle of its zona: the centre is in doubt too.
-    if (ring && layers.ooplasm.finding.isFound())
+    if (ring && layers.ooplasm.finding.isFound()) {
       layers.ooplasm.finding = Finding::uncertain("a faint second ring is seen: this may be a zona's border");
+      layers.ooplasm.which_line = true;
+    }
     return layers;
   }
   const double gap = radiusOf(layers.zona_outer) - radiusOf(ooplasm);
@@ -215,6 +219,7 @@ CellLayers followLayers(const Frame& frame, const CellLayers& previous, const st
   // What was doubtful in the frame before is so here.
   if (previous.ooplasm.finding.verdict == Verdict::kUncertain) {
     layers.ooplasm.finding = previous.ooplasm.finding;
+    layers.ooplasm.which_line = previous.ooplasm.which_line;
     layers.ooplasm.centred = previous.ooplasm.centred;
   }
   layers.main = layers.ooplasm;

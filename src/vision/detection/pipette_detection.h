@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
+#include <optional>
 
 #include "vision/detection/finding.h"
 
@@ -16,6 +17,7 @@ struct PipetteDetection {
   double half_width = 0;                                 ///< px, of the outline near the end
   double taper = 0;                                      ///< growth of the half width along the axis
   double symmetry = 0;                                   ///< 0..1, of the edges near the end
+  std::optional<Finding> second;                         ///< whether a second eye sees the same; none: there was none
   double clearness = 0;                                  ///< of the end: edges before it over edges behind it
 
   /// Sets the covariance of the end for the direction as it is.

@@ -12,9 +12,16 @@ namespace {
 constexpr int kAxes = 5, kHoldingAxes = 8;
 constexpr double kWider = 1.38;                    // ratio of two outlines' widths that tells them apart
 constexpr double kTipReach = 10, kMouthReach = 8;  // px beside the reach of tracking
-constexpr int kRoundsOfTracking = 2;
+constexpr int kRoundsAtProposal = 3;
+constexpr double kProposedTolerance = 0.15;          // rad, of a direction that a second eye sees
+constexpr double kProposedMargin = 2;                // of the half width, of the region that is searched
 constexpr int kFinest = 1, kFinestBesideBorder = 2;  // see AxisSearch::finer
 constexpr double kBesideBorder = 120;                // px
+
+/// What a second eye doubts is not sure.
+void takeSecond(PipetteDetection& found) {
+  if (found.finding.isFound() && found.second) found.finding = *found.second;
+}
 
 }  // namespace
 
@@ -31,22 +38,27 @@ PipetteDetectorConfig PipetteDetectorConfig::read(ConfigReader& reader) {
 PipetteDetector::PipetteDetector(const PipetteDetectorConfig& config) : config_(config) {}
 
 PipetteDetection PipetteDetector::detect(const Frame& frame) const {
-  PipetteDetection best;
-  if (!frame.refusal().empty()) {
-    best.finding = Finding::notFound(frame.refusal());
-    return best;
-  }
+  PipetteDetection none;
+  none.finding = Finding::notFound(frame.refusal());
+  if (!frame.refusal().empty()) return none;
   AxisSearch search;
   search.direction = config_.direction;
   search.tolerance = config_.tolerance;
   search.widest = config_.widest;
-  if (config_.region[2] > 0) {
-    search.region = cv::Rect(static_cast<int>(config_.region[0]), static_cast<int>(config_.region[1]),
-                             static_cast<int>(config_.region[2]), static_cast<int>(config_.region[3]));
-  }
-  best.finding = Finding::notFound("no pipette: no two straight edges from the side that it comes from");
+  search.region = region();
   const bool whole = search.region.empty();
-  const int finest = config_.kind == "injection" && whole ? kFinestBesideBorder : kFinest;
+  return this->search(frame, search, config_.kind == "injection" && whole ? kFinestBesideBorder : kFinest);
+}
+
+cv::Rect PipetteDetector::region() const {
+  if (!(config_.region[2] > 0)) return {};
+  return {static_cast<int>(config_.region[0]), static_cast<int>(config_.region[1]), static_cast<int>(config_.region[2]),
+          static_cast<int>(config_.region[3])};
+}
+
+PipetteDetection PipetteDetector::search(const Frame& frame, AxisSearch search, int finest) const {
+  PipetteDetection best;
+  best.finding = Finding::notFound("no pipette: no two straight edges from the side that it comes from");
   // A finer search costs four times as much: only for pipettes of which too little is seen. The finest
   // one is for a needle that has just come into the frame.
   for (; search.finer <= finest && !best.finding.hasValues(); ++search.finer) {
@@ -58,6 +70,45 @@ PipetteDetection PipetteDetector::detect(const Frame& frame) const {
     }
   }
   return best;
+}
+
+PipetteDetection PipetteDetector::detect(const Frame& frame, const ProposedPipette& proposed) const {
+  PipetteDetection found;
+  found.finding = Finding::notFound("the pipette comes from another side");
+  const double direction = proposed.direction();
+  if (!config_.any_direction && angleBetween(direction, config_.direction) > config_.tolerance) return found;
+  const double tolerance = proposed.tolerance;
+  found = search(frame, searchAt(frame, proposed), kFinest);
+  if (!found.finding.hasValues() || cv::norm(found.end - proposed.end) > tolerance) {
+    const PipetteDetection refined =
+        refine(frame, {proposed.end, direction, proposed.half_width, 0, 0}, proposed.end, tolerance, kRoundsAtProposal);
+    if (refined.finding.hasValues()) found = refined;
+  }
+  if (!found.finding.hasValues()) {
+    found.finding = Finding::notFound("a network sees a pipette whose end cannot be measured");
+    return found;
+  }
+  const bool same = cv::norm(found.end - proposed.end) <= tolerance;
+  found.second = same ? Finding::found() : Finding::uncertain("a network sees its end elsewhere");
+  takeSecond(found);
+  return found;
+}
+
+AxisSearch PipetteDetector::searchAt(const Frame& frame, const ProposedPipette& proposed) const {
+  AxisSearch search;
+  search.direction = proposed.direction();
+  search.tolerance = kProposedTolerance;
+  search.widest = config_.widest;
+  const cv::Rect whole({0, 0}, frame.grey().size()), told = region();
+  const cv::Rect allowed = told.empty() ? whole : whole & told;
+  const double margin = kProposedMargin * proposed.half_width + proposed.tolerance;
+  const cv::Rect2d way(
+      cv::Point2d(std::min(proposed.end.x, proposed.entry.x), std::min(proposed.end.y, proposed.entry.y)),
+      cv::Point2d(std::max(proposed.end.x, proposed.entry.x), std::max(proposed.end.y, proposed.entry.y)));
+  search.region =
+      cv::Rect(cv::Point(way.tl() - cv::Point2d(margin, margin)), cv::Point(way.br() + cv::Point2d(margin, margin))) &
+      allowed;
+  return search;
 }
 
 /// A thick wall is symmetric to an axis of its own: the widest outline is that of the whole holding
@@ -84,10 +135,17 @@ PipetteDetection PipetteDetector::track(const Frame& frame, const PipetteDetecti
   axis.direction = previous.direction;
   axis.half_width = previous.half_width;
   axis.taper = previous.taper;
-  if (config_.kind == "injection") {
-    return refineInjection(frame, axis, previous.end, reach + kTipReach, config_.widest, kRoundsOfTracking);
-  }
-  return refineHolding(frame, axis, previous.end, reach + kMouthReach, 1);
+  const bool injection = config_.kind == "injection";
+  found = refine(frame, axis, previous.end, reach + (injection ? kTipReach : kMouthReach), injection ? 2 : 1);
+  found.second = previous.second;
+  takeSecond(found);
+  return found;
+}
+
+PipetteDetection PipetteDetector::refine(const Frame& frame, const PipetteAxis& axis, const cv::Point2d& end,
+                                         double reach, int rounds) const {
+  return config_.kind == "injection" ? refineInjection(frame, axis, end, reach, config_.widest, rounds)
+                                     : refineHolding(frame, axis, end, reach, rounds);
 }
 
 PipetteDetection PipetteDetector::measure(const Frame& frame, const PipetteAxis& axis) const {

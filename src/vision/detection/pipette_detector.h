@@ -6,12 +6,14 @@
 #include "base/config_reader.h"
 #include "vision/detection/pipette_axis.h"
 #include "vision/detection/pipette_detection.h"
+#include "vision/detection/proposal.h"
 
 namespace microinjection {
 
 struct PipetteDetectorConfig {
   std::string kind = "injection";  ///< injection: a tip; holding: a blunt mouth
   double direction = -M_PI / 2;    ///< rad in the image, from the end towards the shaft, from x towards y
+  bool any_direction = false;      ///< where a second eye sees a pipette, it may come from anywhere
   double tolerance = 0.5;          ///< rad, of the direction
   double widest = 500;             ///< px, diameter of the part that is in the image
   Eigen::Vector4d region = Eigen::Vector4d::Zero();  ///< px, x, y, width, height of the part of the frame with the
@@ -26,12 +28,22 @@ class PipetteDetector {
  public:
   explicit PipetteDetector(const PipetteDetectorConfig& config);
 
+  const PipetteDetectorConfig& config() const { return config_; }
+
   /// Searches the whole frame, or the region.
   PipetteDetection detect(const Frame& frame) const;
+  /// Searches where a second eye sees a pipette. It is found where both eyes see its end in the same place; where
+  /// nothing is measured, it is uncertain and where the second eye sees it.
+  PipetteDetection detect(const Frame& frame, const ProposedPipette& proposed) const;
   /// Searches near a pipette that was found in an earlier frame: its end moved by at most `reach` (px).
   PipetteDetection track(const Frame& frame, const PipetteDetection& previous, double reach) const;
 
  private:
+  cv::Rect region() const;  ///< that is told; empty: none
+  AxisSearch searchAt(const Frame& frame, const ProposedPipette& proposed) const;
+  PipetteDetection search(const Frame& frame, AxisSearch search, int finest) const;
+  PipetteDetection refine(const Frame& frame, const PipetteAxis& axis, const cv::Point2d& end, double reach,
+                          int rounds) const;
   PipetteDetection measure(const Frame& frame, const PipetteAxis& axis) const;
   void take(PipetteDetection& best, const PipetteDetection& found) const;
 

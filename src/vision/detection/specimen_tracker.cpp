@@ -2,6 +2,9 @@
 
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <utility>
+
+#include "vision/detection/frame_search.h"
 
 namespace microinjection {
 namespace {
@@ -13,7 +16,8 @@ constexpr double kBlank = 3;        // deviations of a pixel's noise, of the sam
 
 PipetteDetectorConfig readPipette(ConfigReader& reader, const std::string& kind, double direction) {
   PipetteDetectorConfig config = PipetteDetectorConfig::read(reader);
-  if (!reader.has("direction")) config.direction = direction;
+  config.any_direction = !reader.has("direction");
+  if (config.any_direction) config.direction = direction;
   config.kind = kind;
   return config;
 }
@@ -24,8 +28,9 @@ bool isSure(const CellDetection& cell) { return cell.size.isFound(); }
 
 /// The thing near its last place, else anywhere. What is followed is not lost by a search that finds nothing, nor, but
 /// for the rarest ones, by one that finds nothing sure: its lines would jump to others.
-template <typename Detector, typename Detection>
-Detection follow(const Detector& detector, const Frame& frame, const Detection& last, double reach, SearchPace& pace) {
+template <typename Detector, typename Detection, typename Search>
+Detection follow(const Detector& detector, const Frame& frame, const Detection& last, double reach, SearchPace& pace,
+                 const Search& search) {
   Detection tracked;
   tracked.finding = last.finding;
   const bool was_there = last.finding.hasValues();
@@ -34,7 +39,7 @@ Detection follow(const Detector& detector, const Frame& frame, const Detection& 
   if (sure || (!followed && was_there && isSure(last))) pace = SearchPace();
   if (sure || !pace.isDue(followed ? SpecimenTracker::kSearchEvery : SpecimenTracker::kSearchMissingEvery))
     return tracked;
-  const Detection found = detector.detect(frame);
+  const Detection found = search(detector);
   const bool rare = pace.waited() >= SpecimenTracker::kSearchEvery;
   pace.searched(isSure(found));
   return followed && !(rare ? found.finding.hasValues() : isSure(found)) ? tracked : found;
@@ -102,8 +107,12 @@ SpecimenTrackerConfig SpecimenTrackerConfig::read(ConfigReader& reader) {
   return config;
 }
 
-SpecimenTracker::SpecimenTracker(const SpecimenTrackerConfig& config)
-    : config_(config), cell_(config.cell), injection_(config.injection), holding_(config.holding) {}
+SpecimenTracker::SpecimenTracker(const SpecimenTrackerConfig& config, std::shared_ptr<SecondEye> eye)
+    : config_(config),
+      cell_(config.cell),
+      injection_(config.injection),
+      holding_(config.holding),
+      eye_(std::move(eye)) {}
 
 void SearchPace::searched(bool sure) {
   searches_ = sure ? 0 : searches_ + 1;
@@ -125,10 +134,14 @@ bool SpecimenTracker::isAnotherScene(const Frame& frame) {
 
 const SpecimenView& SpecimenTracker::next(const Frame& frame) {
   if (isAnotherScene(frame)) cell_pace_ = injection_pace_ = holding_pace_ = SearchPace();
+  FrameSearch search(frame, eye_.get());
   SpecimenView view;
-  view.cell = follow(cell_, frame, view_.cell, config_.reach, cell_pace_);
-  view.injection = follow(injection_, frame, view_.injection, config_.reach, injection_pace_);
-  view.holding = follow(holding_, frame, view_.holding, config_.reach, holding_pace_);
+  view.cell = follow(cell_, frame, view_.cell, config_.reach, cell_pace_,
+                     [&](const CellDetector& detector) { return search.cell(detector); });
+  view.injection = follow(injection_, frame, view_.injection, config_.reach, injection_pace_,
+                          [&](const PipetteDetector& detector) { return search.pipette(detector); });
+  view.holding = follow(holding_, frame, view_.holding, config_.reach, holding_pace_,
+                        [&](const PipetteDetector& detector) { return search.pipette(detector); });
   if (view.holding.finding.isFound())
     view.cell.dismissOthers([&](const Ellipse& thing) { return belongsTo(view.holding, thing); });
   measureIndentation(frame, view);

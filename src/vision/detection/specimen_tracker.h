@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <memory>
 
 #include "base/config_reader.h"
 #include "vision/detection/cell_detector.h"
@@ -52,10 +53,12 @@ class SearchPace {
 /// Follows cell and pipettes from frame to frame. What was found is searched near its last place;
 /// what is lost is searched in the whole frame, see SearchPace. A pipette that is uncertain is followed too, and so
 /// is a cell whose diameter is. In a frame that shows another scene than the last one all is searched that is not
-/// followed surely.
+/// followed surely. Where there is a second eye, things are searched where that sees them, and are found where both
+/// eyes agree.
 class SpecimenTracker {
  public:
-  explicit SpecimenTracker(const SpecimenTrackerConfig& config);
+  /// @param eye  none: the whole frame is searched
+  explicit SpecimenTracker(const SpecimenTrackerConfig& config, std::shared_ptr<SecondEye> eye = nullptr);
 
   /// A refused frame finds nothing, and the next one is searched as a whole.
   const SpecimenView& next(const Frame& frame);
@@ -70,6 +73,7 @@ class SpecimenTracker {
   SpecimenTrackerConfig config_;
   CellDetector cell_;
   PipetteDetector injection_, holding_;
+  std::shared_ptr<SecondEye> eye_;
   SpecimenView view_;
   SearchPace cell_pace_, injection_pace_, holding_pace_;
   cv::Mat samples_;  ///< of the last frame's grey values

@@ -6,7 +6,7 @@ namespace microinjection {
 
 void SharpestPlane::add(const CameraFrame& frame) {
   ++planes_;
-  SpecimenTracker tracker(config_);
+  SpecimenTracker tracker(config_, eye_);
   const Frame image(frame.image);
   const SpecimenView view = tracker.next(image);
   if (view.cell.size.isFound()) ++found_;

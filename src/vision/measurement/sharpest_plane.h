@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "vision/camera/frame_source.h"
 #include "vision/detection/specimen_tracker.h"
@@ -23,7 +25,8 @@ struct CellPlane {
 /// a wrong diameter. Each plane is searched as a whole, so that one does not mislead the next.
 class SharpestPlane {
  public:
-  explicit SharpestPlane(const SpecimenTrackerConfig& config) : config_(config) {}
+  explicit SharpestPlane(const SpecimenTrackerConfig& config, std::shared_ptr<SecondEye> eye = nullptr)
+      : config_(config), eye_(std::move(eye)) {}
 
   void add(const CameraFrame& frame);
   std::size_t planes() const { return planes_; }                  ///< that were added
@@ -34,6 +37,7 @@ class SharpestPlane {
 
  private:
   SpecimenTrackerConfig config_;
+  std::shared_ptr<SecondEye> eye_;
   std::size_t planes_ = 0, found_ = 0;
   std::optional<CellPlane> best_;
 };

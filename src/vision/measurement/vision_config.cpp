@@ -5,6 +5,7 @@
 #include "base/errors.h"
 #include "vision/calibration/calibration_file.h"
 #include "vision/calibration/calibration_path.h"
+#include "vision/segmentation/learned_eye.h"
 
 namespace microinjection {
 
@@ -16,6 +17,7 @@ VisionConfig VisionConfig::read(ConfigReader& reader) {
   reader.number("serve_timeout", config.serve_timeout, Range::positive());
   reader.boolean("overlay", config.overlay);
   reader.integer("measured_images", config.measured_images, Range::closed(kLeastImages, 1000));
+  reader.choice("eyes", config.eyes, {"both", "geometry"});
   config.tracker = SpecimenTrackerConfig::read(reader);
   return config;
 }
@@ -23,6 +25,10 @@ VisionConfig VisionConfig::read(ConfigReader& reader) {
 VisionConfig VisionConfig::standard() {
   ConfigReader nothing(YAML::Node(YAML::NodeType::Map), "");
   return read(nothing);
+}
+
+std::shared_ptr<SecondEye> VisionConfig::secondEye() const {
+  return eyes == "both" ? std::make_shared<LearnedEye>() : nullptr;
 }
 
 double VisionConfig::pixelSize(const Eigen::Vector2i& image, std::string& warning) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <string>
 
 #include "vision/detection/specimen_tracker.h"
@@ -16,6 +17,7 @@ struct VisionConfig {
   double serve_timeout = 5;    ///< s, in which cell_simulator answers
   bool overlay = true;
   int measured_images = 15;
+  std::string eyes = "both";  ///< both, or geometry: without the network that tells where things are
   SpecimenTrackerConfig tracker;
 
   static constexpr int kLeastImages = 3;  ///< of a measurement in a stream of images
@@ -23,6 +25,8 @@ struct VisionConfig {
   /// What read() gives without any key. The pipettes' detectors have other defaults.
   static VisionConfig standard();
   static VisionConfig read(ConfigReader& reader);
+  /// The second eye that is asked for; may be none.
+  std::shared_ptr<SecondEye> secondEye() const;
   /// m of the specimen, for images of this width and height (px; 0: not known yet). Throws ConfigError when it is not
   /// known, or the calibration is of images of another size. `warning`: the calibration's, see CameraCalibration.
   double pixelSize(const Eigen::Vector2i& image, std::string& warning) const;

@@ -77,10 +77,16 @@ cv::Mat Segmentation::frameMask(std::initializer_list<PixelClass> classes) const
   return wide > kInside;
 }
 
-std::vector<ClassRegion> Segmentation::regions(std::initializer_list<PixelClass> classes, double least) const {
+std::vector<ClassRegion> Segmentation::regions(std::initializer_list<PixelClass> classes, double least,
+                                               double inside, int closing) const {
   const cv::Mat sum = probability(classes);
+  cv::Mat seen = sum > inside;
+  if (closing > 0) {
+    const int width = 2 * closing + 1;
+    cv::morphologyEx(seen, seen, cv::MORPH_CLOSE, cv::getStructuringElement(cv::MORPH_ELLIPSE, {width, width}));
+  }
   cv::Mat components, statistics, centroids;
-  const int count = cv::connectedComponentsWithStats(sum > kInside, components, statistics, centroids, 4, CV_32S);
+  const int count = cv::connectedComponentsWithStats(seen, components, statistics, centroids, 4, CV_32S);
   std::vector<ClassRegion> found;
   for (int i = 1; i < count; ++i) {
     if (statistics.at<int>(i, cv::CC_STAT_AREA) < kLeastPixels) continue;
@@ -124,17 +130,22 @@ ClassRegion Segmentation::regionOf(const cv::Mat& component, const cv::Mat& prob
   return region;
 }
 
-std::optional<cv::Point2d> Segmentation::endOf(const ClassRegion& region) const {
+std::optional<RegionWay> Segmentation::wayOf(const ClassRegion& region) const {
   constexpr double kEnd = 1;      // output px along the axis whose middle is taken
   constexpr int kDirections = 3;  // improvements of the axis
+  constexpr int kNearBorder = 5;  // output px: the network does not always see what the border cuts
   std::vector<cv::Point> pixels;
   cv::findNonZero(region.mask, pixels);
   cv::Point2d entry(0, 0), end(0, 0);
-  int entering = 0;
+  int entering = 0, nearest = kNearBorder;
+  const auto toBorder = [this](const cv::Point& pixel) {
+    return std::min({pixel.x - inside_.x, pixel.y - inside_.y, inside_.br().x - 1 - pixel.x,
+                     inside_.br().y - 1 - pixel.y});
+  };
+  for (const cv::Point& pixel : pixels) nearest = std::min(nearest, toBorder(pixel));
   for (const cv::Point& pixel : pixels) {
     end += cv::Point2d(pixel);
-    if (pixel.x > inside_.x && pixel.y > inside_.y && pixel.x < inside_.br().x - 1 && pixel.y < inside_.br().y - 1)
-      continue;
+    if (toBorder(pixel) > nearest || nearest >= kNearBorder) continue;
     entry += cv::Point2d(pixel);
     ++entering;
   }
@@ -155,7 +166,7 @@ std::optional<cv::Point2d> Segmentation::endOf(const ClassRegion& region) const 
     }
     end = sum / count;
   }
-  return toFrame(end);
+  return RegionWay{toFrame(entry), toFrame(end)};
 }
 
 // An output pixel lies in the middle of 2 x 2 pixels of the working image.

@@ -24,6 +24,11 @@ struct ClassRegion {
   cv::Mat mask;                 ///< CV_8U, 255 inside; of the output's size
 };
 
+/// Of a region that enters through the frame's border: the middle of where it does, and of its end in the frame, px.
+struct RegionWay {
+  cv::Point2d entry, end;
+};
+
 /// What the network says of a frame: a probability of each class for each output pixel, of which there are kWidth x
 /// kHeight, half as many in a row as the working image has.
 class Segmentation {
@@ -44,16 +49,19 @@ class Segmentation {
   /// The same in the frame's size, from the interpolated probabilities: 255 where they exceed 1/2.
   cv::Mat frameMask(std::initializer_list<PixelClass> classes) const;
 
-  /// Connected regions of a probability above 1/2, the largest first. Smaller ones than `least` (px^2 of the frame) and
+  /// Connected regions of a probability above `inside`, the largest first. Smaller ones than `least` (px^2 of the frame) and
   /// than 4 output pixels are left out. An area counts the probabilities along the border, so that it is finer than the
   /// output's pixels.
-  std::vector<ClassRegion> regions(std::initializer_list<PixelClass> classes, double least = 0) const;
+  /// @param inside  probability above which a pixel counts
+  /// @param closing  output px, half width of gaps that do not part a region
+  std::vector<ClassRegion> regions(std::initializer_list<PixelClass> classes, double least = 0, double inside = 0.5,
+                                   int closing = 0) const;
   /// The largest of them.
   std::optional<ClassRegion> largestRegion(std::initializer_list<PixelClass> classes) const;
 
-  /// Of a region that enters through the frame's border, as that of a pipette does: the middle of its end in the frame,
-  /// px. None for a region that does not touch the border.
-  std::optional<cv::Point2d> endOf(const ClassRegion& region) const;
+  /// Of a region that enters through the frame's border, as that of a pipette does. None for a region that does not
+  /// touch the border.
+  std::optional<RegionWay> wayOf(const ClassRegion& region) const;
 
   /// px of the frame in a row of one output pixel.
   double framePixels() const { return 2 / working_.scale; }

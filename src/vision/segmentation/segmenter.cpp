@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/errors.h"
+#include "vision/segmentation/built_in_weights.h"
 
 namespace microinjection {
 namespace {
@@ -22,9 +23,9 @@ std::string descriptionOf(const std::string& weights) {
   return (has_ending ? weights.substr(0, dot) : weights) + ".yaml";
 }
 
-std::vector<char> bytesOf(const std::string& path) {
+std::string bytesOf(const std::string& path, const char* what) {
   std::ifstream file(path, std::ios::binary);
-  if (!file) throw ConfigError(path + ": the weights of the segmentation cannot be read" + kRemedy);
+  if (!file) throw ConfigError(path + ": " + what + " cannot be read" + kRemedy);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
@@ -33,12 +34,10 @@ struct WeightsDescription {
   std::uint32_t checksum = 0;
 };
 
-WeightsDescription readDescription(const std::string& path) {
+WeightsDescription describedIn(const std::string& path, std::string_view text) {
   try {
-    const YAML::Node file = YAML::LoadFile(path);
+    const YAML::Node file = YAML::Load(std::string(text));
     return {file["classes"].as<std::vector<std::string>>(), file["crc32"].as<std::uint32_t>()};
-  } catch (const YAML::BadFile&) {
-    throw ConfigError(path + ": the description of the segmentation's weights cannot be read" + kRemedy);
   } catch (const YAML::Exception& error) {
     throw ConfigError(path + ": " + error.what() + kRemedy);
   }
@@ -71,10 +70,19 @@ bool hasOutputSize(const cv::Mat& output) {
 
 }  // namespace
 
+Segmenter::Segmenter() {
+  load("config/vision/segmentation.onnx", builtInWeights(), "config/vision/segmentation.yaml", builtInDescription());
+}
+
 Segmenter::Segmenter(const std::string& weights) {
   const std::string description = descriptionOf(weights);
-  const std::vector<char> bytes = bytesOf(weights);
-  const WeightsDescription described = readDescription(description);
+  const std::string bytes = bytesOf(weights, "the weights of the segmentation");
+  load(weights, bytes, description, bytesOf(description, "the description of the segmentation's weights"));
+}
+
+void Segmenter::load(const std::string& weights, std::string_view bytes, const std::string& description,
+                     std::string_view text) {
+  const WeightsDescription described = describedIn(description, text);
   checkClasses(description, described.classes);
   const auto checksum = static_cast<std::uint32_t>(
       crc32(0, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(bytes.size())));
@@ -91,8 +99,8 @@ Segmenter::Segmenter(const std::string& weights) {
   }
 }
 
-Segmentation Segmenter::segment(const Frame& frame) {
-  const WorkingImage working(frame.grey());
+Segmentation Segmenter::segment(const cv::Mat& grey) {
+  const WorkingImage working(grey);
   network_.setInput(inputOf(working));
   const cv::Mat output = network_.forward();
   std::array<cv::Mat, kPixelClasses> probabilities;
@@ -100,7 +108,7 @@ Segmentation Segmenter::segment(const Frame& frame) {
     probabilities[i] = cv::Mat(Segmentation::kHeight, Segmentation::kWidth, CV_32F,
                                const_cast<float*>(output.ptr<float>(0, static_cast<int>(i))))
                            .clone();
-  return {std::move(probabilities), working, frame.grey().size()};
+  return {std::move(probabilities), working, grey.size()};
 }
 
 }  // namespace microinjection

@@ -145,7 +145,7 @@ TEST(CellDetector, TwoCellsAreUncertain) {
   const CellDetection cell = CellDetector(forRendered()).detect(Frame(both));
   EXPECT_EQ(cell.finding.verdict, Verdict::kUncertain);
   EXPECT_EQ(cell.size.verdict, Verdict::kUncertain);
-  EXPECT_EQ(cell.others.size(), 1U);
+  EXPECT_EQ(cell.otherCells(), 1);
   CellDetection followed = CellDetector(forRendered()).track(Frame(both), cell, 8);
   EXPECT_EQ(followed.finding.verdict, Verdict::kUncertain) << "the other one is still there";
   EXPECT_EQ(followed.size.verdict, Verdict::kUncertain);

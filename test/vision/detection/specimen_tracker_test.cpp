@@ -94,7 +94,7 @@ TEST_F(SpecimenTrackerTest, AnUncertainCellIsFollowedAndSometimesSearched) {
     ASSERT_TRUE(view.cell.others.empty()) << i;
     ASSERT_LT(cv::norm(view.cell.centre - pixel(-70e-6, 0)), 1) << i;
   }
-  EXPECT_EQ(tracker_.next(both).cell.others.size(), 1U);
+  EXPECT_EQ(tracker_.next(both).cell.otherCells(), 1);
 }
 
 TEST_F(SpecimenTrackerTest, WhatIsMissingIsSearchedMoreAndMoreRarely) {

@@ -83,12 +83,12 @@ TEST(Segmentation, FindsTheEndOfWhatEntersThroughTheBorder) {
   cv::fillConvexPoly(planes[static_cast<std::size_t>(PixelClass::kInjectionPipette)], cone, 1);
   cv::rectangle(planes[static_cast<std::size_t>(PixelClass::kHoldingPipette)], cv::Rect(0, 60, 21, 21), 1, cv::FILLED);
   const Segmentation segmentation(planes, WorkingImage(cv::Mat(frame, CV_32F, 0.5F)), frame);
-  const auto tip = segmentation.endOf(*segmentation.largestRegion({PixelClass::kInjectionPipette}));
-  const auto mouth = segmentation.endOf(*segmentation.largestRegion({PixelClass::kHoldingPipette}));
+  const auto tip = segmentation.wayOf(*segmentation.largestRegion({PixelClass::kInjectionPipette}));
+  const auto mouth = segmentation.wayOf(*segmentation.largestRegion({PixelClass::kHoldingPipette}));
   ASSERT_TRUE(tip && mouth);
-  EXPECT_LT(cv::norm(*tip - segmentation.toFrame({40, 30})), 10);
-  EXPECT_LT(cv::norm(*mouth - segmentation.toFrame({20, 70})), 6);
-  EXPECT_FALSE(drawn({400, 300}, 150, 200).endOf(*drawn({400, 300}, 150, 200).largestRegion(kCell)));
+  EXPECT_LT(cv::norm(tip->end - segmentation.toFrame({40, 30})), 10);
+  EXPECT_LT(cv::norm(mouth->end - segmentation.toFrame({20, 70})), 6);
+  EXPECT_FALSE(drawn({400, 300}, 150, 200).wayOf(*drawn({400, 300}, 150, 200).largestRegion(kCell)));
 }
 
 TEST(Segmentation, HasMasksOfBothSizes) {

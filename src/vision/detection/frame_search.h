@@ -1,0 +1,32 @@
+#pragma once
+
+#include <optional>
+
+#include "vision/detection/cell_detector.h"
+#include "vision/detection/pipette_detector.h"
+#include "vision/detection/proposal.h"
+
+namespace microinjection {
+
+/// Searches of one frame, at which a second eye looks once at most, when the first thing is searched. A cell is
+/// searched where that eye sees one. So is a pipette. Where it sees none, since a thin one is too fine for it, a
+/// pipette whose direction is told is searched in the whole frame; without a direction only where glass is seen, and it
+/// is sure only if glass is seen along its shaft.
+class FrameSearch {
+ public:
+  /// @param eye  none: the whole frame is searched
+  FrameSearch(const Frame& frame, SecondEye* eye) : frame_(frame), eye_(frame.refusal().empty() ? eye : nullptr) {}
+
+  CellDetection cell(const CellDetector& detector);
+  PipetteDetection pipette(const PipetteDetector& detector);
+
+ private:
+  const Proposal& proposal();
+  void judgeByGlass(PipetteDetection& pipette);
+
+  const Frame& frame_;
+  SecondEye* eye_;
+  std::optional<Proposal> proposal_;
+};
+
+}  // namespace microinjection

@@ -1,0 +1,178 @@
+#include <gtest/gtest.h>
+
+#include "vision/detection/specimen_tracker.h"
+#include "vision/microscope/microscope.h"
+
+namespace microinjection {
+namespace {
+
+constexpr double kSeenPixel = 0.3e-6, kSeenRadius = 38e-6;  // m
+constexpr double kSeenTurn = 0.7;                           // rad, of the needle from the vertical
+
+/// Sees what it is told.
+class ToldEye : public SecondEye {
+ public:
+  Proposal look(const Frame&) override {
+    ++looks;
+    return proposal;
+  }
+  ProposedPipette lookCloser(const Frame&, const std::string&, const ProposedPipette& pipette) override {
+    return pipette;
+  }
+
+  Proposal proposal;
+  int looks = 0;
+};
+
+/// A held oocyte with a zona and a needle that comes from no usual side, and an eye that is right.
+class SecondEyeTest : public testing::Test {
+ protected:
+  SecondEyeTest() : microscope_(microscopeConfig()), eye_(std::make_shared<ToldEye>()) {
+    scene_.cells.push_back(CellScene::round({0, 0}, kSeenRadius, 6e-6, 0));
+    HoldingPipette holder;
+    holder.mouth = {0, -37e-6};
+    holder.inner_radius = 13.6e-6;
+    scene_.holding = holder;
+    InjectionPipette needle;
+    needle.tip = {45e-6, 0, 40e-6};
+    needle.axis = {std::sin(kSeenTurn), 0, std::cos(kSeenTurn)};
+    needle.tip_radius = 3e-6;
+    scene_.injection = needle;
+    const double radius = kSeenRadius / kSeenPixel, ooplasm = (kSeenRadius - 6e-6) / kSeenPixel;
+    eye_->proposal.cells.push_back({{pixel(0, 0) + cv::Point2d(3, -2), {1.02 * ooplasm, 0.99 * ooplasm}, 0.3},
+                                    Ellipse{pixel(0, 0) + cv::Point2d(-2, 4), {1.03 * radius, 1.01 * radius}, 0.1},
+                                    false,
+                                    0.9,
+                                    true});
+    eye_->proposal.injection =
+        ProposedPipette{pixel(45e-6, 40e-6) + cv::Point2d(7, 5), pixel(110e-6, 117e-6), 15, 20, 0.9};
+    eye_->proposal.holding = ProposedPipette{pixel(0, -37e-6) + cv::Point2d(-6, 3), pixel(0, -140e-6), 100, 20, 0.9};
+  }
+
+  static MicroscopeConfig microscopeConfig() {
+    MicroscopeConfig config;
+    config.camera.pixel_size = kSeenPixel;
+    return config;
+  }
+  cv::Point2d pixel(double x, double z) const {
+    const Eigen::Vector2d place = microscope_.config().camera.pixelOf({x, z});
+    return {place.x(), place.y()};
+  }
+  Frame frame() { return Frame(microscope_.render(scene_, 0, ++seed_)); }
+  SpecimenView seen(const SpecimenTrackerConfig& config) { return SpecimenTracker(config, eye_).next(frame()); }
+  static SpecimenTrackerConfig anyDirection() {
+    ConfigReader nothing(YAML::Node(YAML::NodeType::Map), "");
+    return SpecimenTrackerConfig::read(nothing);
+  }
+
+  Microscope microscope_;
+  MicroscopeScene scene_;
+  std::shared_ptr<ToldEye> eye_;
+  std::uint64_t seed_ = 0;
+};
+
+TEST_F(SecondEyeTest, WhatBothSeeIsFound) {
+  const SpecimenView view = seen(anyDirection());
+  ASSERT_TRUE(view.cell.size.isFound()) << view.cell.size.reason;
+  EXPECT_LT(cv::norm(view.cell.centre - pixel(0, 0)), 0.3);
+  EXPECT_NEAR(view.cell.outer().ellipse.meanDiameter() * kSeenPixel, 2 * kSeenRadius, 0.01 * kSeenRadius);
+  ASSERT_TRUE(view.injection.finding.isFound()) << view.injection.finding.reason;
+  EXPECT_LT(cv::norm(view.injection.end - pixel(45e-6, 40e-6)), 0.5);
+  ASSERT_TRUE(view.holding.finding.isFound()) << view.holding.finding.reason;
+  EXPECT_LT(cv::norm(view.holding.end - pixel(0, -37e-6)), 1);
+}
+
+TEST_F(SecondEyeTest, WhatItDoesNotSeeIsNotClaimed) {
+  eye_->proposal.cells.clear();
+  eye_->proposal.injection.reset();
+  eye_->proposal.holding.reset();
+  const SpecimenView view = seen(anyDirection());
+  EXPECT_FALSE(view.cell.finding.hasValues());
+  EXPECT_FALSE(view.injection.finding.hasValues());
+  EXPECT_FALSE(view.holding.finding.hasValues());
+  EXPECT_EQ(eye_->looks, 1);
+}
+
+TEST_F(SecondEyeTest, ACellThatItSeesOtherwiseIsUncertain) {
+  const ProposedCell right = eye_->proposal.cells.front();
+  ProposedCell& told = eye_->proposal.cells.front();
+  told.zona->semi_axes *= 1.15;
+  EXPECT_EQ(seen(anyDirection()).cell.size.reason, "a network sees the zona's border elsewhere");
+  told = right;
+  told.zona.reset();
+  told.ooplasm.semi_axes *= 0.8;
+  const CellDetection cell = seen(anyDirection()).cell;
+  EXPECT_EQ(cell.size.reason, "a network sees the cell's border elsewhere");
+  EXPECT_EQ(cell.finding.verdict, Verdict::kUncertain);
+}
+
+/// A zona that the network overlooks is no less sure; one that was not measured is.
+TEST_F(SecondEyeTest, AThinZonaMayBeOverlooked) {
+  eye_->proposal.cells.front().zona.reset();
+  EXPECT_TRUE(seen(anyDirection()).cell.second->isFound());
+  scene_.cells.front() = CellScene::round({0, 0}, kSeenRadius - 6e-6, 0, 0);
+  EXPECT_TRUE(seen(anyDirection()).cell.second->isFound());
+  eye_->proposal.cells.front().zona = Ellipse{pixel(0, 0), {127, 127}, 0};
+  EXPECT_FALSE(seen(anyDirection()).cell.size.isFound());
+}
+
+/// Each frame that follows has the doubt of the one that was searched.
+TEST_F(SecondEyeTest, ADoubtIsTracked) {
+  eye_->proposal.cells.front().zona->semi_axes *= 1.15;
+  eye_->proposal.injection->end += cv::Point2d(24, -28);  // along its axis
+  SpecimenTracker tracker(anyDirection(), eye_);
+  for (int i = 0; i < SearchPace::kFirst + 4; ++i) {
+    const SpecimenView& view = tracker.next(frame());
+    EXPECT_EQ(view.cell.size.reason, "a network sees the zona's border elsewhere") << i;
+    EXPECT_EQ(view.injection.finding.reason, "a network sees its end elsewhere") << i;
+  }
+}
+
+/// Another one beside it would be taken for the cell.
+TEST_F(SecondEyeTest, AHeldCellThatCannotBeMeasuredIsNotReplaced) {
+  scene_.cells.front() = CellScene::round({0, 70e-6}, 25e-6, 0, 0);
+  scene_.injection.reset();
+  ProposedCell beside = eye_->proposal.cells.front();
+  beside.zona.reset();
+  beside.held = false;
+  beside.ooplasm = {pixel(0, 70e-6), {83, 83}, 0};
+  eye_->proposal.cells.push_back(beside);
+  EXPECT_FALSE(seen(anyDirection()).cell.finding.hasValues());
+  eye_->proposal.cells.erase(eye_->proposal.cells.begin());
+  EXPECT_TRUE(seen(anyDirection()).cell.finding.hasValues());
+}
+
+TEST_F(SecondEyeTest, OfTwoCellsThatWhichIsHeldIsTheCell) {
+  ProposedCell beside = eye_->proposal.cells.front();
+  beside.ooplasm.centre += cv::Point2d(-400, 0);
+  beside.zona->centre += cv::Point2d(-400, 0);
+  beside.held = false;
+  eye_->proposal.cells.push_back(beside);
+  EXPECT_TRUE(seen(anyDirection()).cell.size.isFound());
+  eye_->proposal.cells.front().held = false;
+  EXPECT_EQ(seen(anyDirection()).cell.size.reason, CellDetection::kTwoCells);
+}
+
+TEST_F(SecondEyeTest, APipetteElsewhereIsUncertainOrNone) {
+  eye_->proposal.injection->end += cv::Point2d(60, -71);  // along its axis
+  eye_->proposal.injection->half_width = 5;
+  EXPECT_EQ(seen(anyDirection()).injection.finding.reason, "a network sees its end elsewhere");
+  scene_.injection.reset();
+  EXPECT_FALSE(seen(anyDirection()).injection.finding.isFound());
+}
+
+TEST_F(SecondEyeTest, ADirectionThatIsToldHolds) {
+  SpecimenTrackerConfig config = anyDirection();
+  config.injection.any_direction = false;
+  config.injection.direction = M_PI;  // from the left
+  EXPECT_EQ(seen(config).injection.finding.reason, "the pipette comes from another side");
+}
+
+TEST_F(SecondEyeTest, LooksWhereSomethingIsSearchedOnly) {
+  SpecimenTracker tracker(anyDirection(), eye_);
+  for (int i = 0; i < 5; ++i) tracker.next(frame());
+  EXPECT_EQ(eye_->looks, 1);
+}
+
+}  // namespace
+}  // namespace microinjection
