@@ -152,7 +152,8 @@ class Fit {
     set(node, pipette + second, roundedParameter(radius * ratio));
   }
 
-  /// Of the virtual microscope the pixel size and the pipettes' directions are known, and its calibration is not that of a real camera.
+  /// Of the virtual microscope the pixel size and the pipettes' directions are known, and its calibration is not that
+  /// of a real camera.
   void followMicroscope() {
     setParameter(changed_, "vision/pixel_size", get(kMicroscope, "camera/pixel_size"));
     const double turned = read(kMicroscope, "camera/angle");  // counter-clockwise, and directions count clockwise

@@ -77,8 +77,8 @@ cv::Mat Segmentation::frameMask(std::initializer_list<PixelClass> classes) const
   return wide > kInside;
 }
 
-std::vector<ClassRegion> Segmentation::regions(std::initializer_list<PixelClass> classes, double least,
-                                               double inside, int closing) const {
+std::vector<ClassRegion> Segmentation::regions(std::initializer_list<PixelClass> classes, double least, double inside,
+                                               int closing) const {
   const cv::Mat sum = probability(classes);
   cv::Mat seen = sum > inside;
   if (closing > 0) {
@@ -139,8 +139,8 @@ std::optional<RegionWay> Segmentation::wayOf(const ClassRegion& region) const {
   cv::Point2d entry(0, 0), end(0, 0);
   int entering = 0, nearest = kNearBorder;
   const auto toBorder = [this](const cv::Point& pixel) {
-    return std::min({pixel.x - inside_.x, pixel.y - inside_.y, inside_.br().x - 1 - pixel.x,
-                     inside_.br().y - 1 - pixel.y});
+    return std::min(
+        {pixel.x - inside_.x, pixel.y - inside_.y, inside_.br().x - 1 - pixel.x, inside_.br().y - 1 - pixel.y});
   };
   for (const cv::Point& pixel : pixels) nearest = std::min(nearest, toBorder(pixel));
   for (const cv::Point& pixel : pixels) {

@@ -49,9 +49,9 @@ class Segmentation {
   /// The same in the frame's size, from the interpolated probabilities: 255 where they exceed 1/2.
   cv::Mat frameMask(std::initializer_list<PixelClass> classes) const;
 
-  /// Connected regions of a probability above `inside`, the largest first. Smaller ones than `least` (px^2 of the frame) and
-  /// than 4 output pixels are left out. An area counts the probabilities along the border, so that it is finer than the
-  /// output's pixels.
+  /// Connected regions of a probability above `inside`, the largest first. Smaller ones than `least` (px^2 of the
+  /// frame) and than 4 output pixels are left out. An area counts the probabilities along the border, so that it is
+  /// finer than the output's pixels.
   /// @param inside  probability above which a pixel counts
   /// @param closing  output px, half width of gaps that do not part a region
   std::vector<ClassRegion> regions(std::initializer_list<PixelClass> classes, double least = 0, double inside = 0.5,
