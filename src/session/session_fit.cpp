@@ -155,15 +155,24 @@ class Fit {
   /// Of the virtual microscope the pixel size and the pipettes' directions are known, and its calibration is not that
   /// of a real camera.
   void followMicroscope() {
-    setParameter(changed_, "vision/pixel_size", get(kMicroscope, "camera/pixel_size"));
-    const double turned = read(kMicroscope, "camera/angle");  // counter-clockwise, and directions count clockwise
-    set("vision", "injection_pipette/direction", roundedParameter(-M_PI / 2 - turned));
-    set("vision", "holding_pipette/direction", roundedParameter(M_PI / 2 - turned));
+    setParameter(changed_, "vision/pixel_size", ofCamera("pixel_size"));
+    double turned = 0;  // counter-clockwise, and directions count clockwise
+    if (YAML::convert<double>::decode(ofCamera("angle"), turned) && std::isfinite(turned)) {
+      set("vision", "injection_pipette/direction", directionOf(-M_PI / 2 - turned));
+      set("vision", "holding_pipette/direction", directionOf(M_PI / 2 - turned));
+    }
     const YAML::Node file = textValue(userDataFile("calibration_simulated.yaml"));
     setParameter(changed_, "calibration/file", file);
     setParameter(changed_, "vision/calibration", file);
     setParameter(changed_, "visual_servo/calibration", file);
   }
+
+  /// As it will be, with what the session overrides.
+  YAML::Node ofCamera(const std::string& key) const {
+    const YAML::Node overridden = parameterAt(session_.overrides, std::string(kMicroscope) + "/camera/" + key);
+    return overridden.IsDefined() ? overridden : get(kMicroscope, "camera/" + key);
+  }
+  static double directionOf(double angle) { return roundedParameter(std::remainder(angle, 2 * M_PI)); }
 
   void override() {
     for (const auto& item : session_.overrides) {

@@ -102,6 +102,21 @@ TEST_F(SessionFitTest, TheVirtualMicroscopeShowsACellOfAnySizeAlike) {
   EXPECT_FALSE(has(fit(wide, "", {"camera.source:=device"}).parameters, "vision"));
 }
 
+TEST_F(SessionFitTest, ThePipettesOfTheVirtualMicroscopeComeFromWhereItIsTurnedTo) {
+  const std::vector<std::string> sim = {"camera.source:=sim", "overrides:={microscope: {camera: {angle: 2.0}}}"};
+  const YAML::Node turned = fit(oocyte(), "", sim).parameters, plain = fit(oocyte(), "", {sim[0]}).parameters;
+  EXPECT_NEAR(number(plain, "vision/injection_pipette/direction"), -M_PI / 2, 1e-3);
+  EXPECT_NEAR(number(plain, "vision/holding_pipette/direction"), M_PI / 2, 1e-3);
+  EXPECT_NEAR(number(turned, "vision/injection_pipette/direction"), 1.5 * M_PI - 2, 1e-3);
+  EXPECT_NEAR(number(turned, "vision/holding_pipette/direction"), M_PI / 2 - 2, 1e-3);
+}
+
+TEST_F(SessionFitTest, TheScaleOfVisionIsThatOfTheMicroscopeAsItIsOverridden) {
+  const YAML::Node parameters =
+      fit(oocyte(), "", {"camera.source:=sim", "overrides:={microscope: {camera: {pixel_size: 0.1e-6}}}"}).parameters;
+  EXPECT_EQ(number(parameters, "vision/pixel_size"), 0.1e-6);
+}
+
 TEST_F(SessionFitTest, KeysAreThoseOfTheFiles) {
   // With a factor of 2 each key that follows the cell differs.
   const YAML::Node parameters =

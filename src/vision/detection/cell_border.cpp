@@ -56,13 +56,6 @@ double steepest(const PolarMap& map, int ray, int column, Polarity polarity) {
   return bend < 0 ? column + std::clamp(0.5 * (a - c) / bend, -0.5, 0.5) : column;
 }
 
-double outsideShare(const Frame& frame, const Ellipse& ellipse) {
-  int outside = 0;
-  constexpr int kPoints = 180;
-  for (int i = 0; i < kPoints; ++i) outside += frame.contains(ellipse.at(2 * M_PI * i / kPoints)) ? 0 : 1;
-  return static_cast<double>(outside) / kPoints;
-}
-
 /// Mean slope along the ellipse, and that over its standard error.
 void weigh(const PolarMap& map, CellBorder& border) {
   double sum = 0, square = 0;
@@ -114,6 +107,13 @@ Points pointsOf(const PolarMap& map, const ClosedPath& path, const cv::Mat& stre
 }
 
 }  // namespace
+
+double outsideShare(const Frame& frame, const Ellipse& ellipse) {
+  int outside = 0;
+  constexpr int kPoints = 180;
+  for (int i = 0; i < kPoints; ++i) outside += frame.contains(ellipse.at(2 * M_PI * i / kPoints)) ? 0 : 1;
+  return static_cast<double>(outside) / kPoints;
+}
 
 Ellipse scaled(const Ellipse& ellipse, double factor) {
   return {ellipse.centre, ellipse.semi_axes * factor, ellipse.angle};

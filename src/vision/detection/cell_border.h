@@ -72,6 +72,9 @@ double worthOf(const CellBorder& border);
 /// pixels and of what smooths them.
 double diameterDeviation(const CellBorder& border);
 
+/// Share of an ellipse that is outside of the image.
+double outsideShare(const Frame& frame, const Ellipse& ellipse);
+
 /// An ellipse about the same centre with both axes changed by the factor.
 Ellipse scaled(const Ellipse& ellipse, double factor);
 

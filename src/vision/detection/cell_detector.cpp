@@ -22,24 +22,19 @@ bool isWithin(const CellDetection& found, const Ellipse& other) {
   return cv::norm(other.centre - first.centre) < 0.4 * (other.meanDiameter() + first.meanDiameter());
 }
 
-constexpr double kAgreedSize = 0.11, kAgreedPlace = 0.06;  // of the diameter
-constexpr double kThinZona = 1.2;        // of the ooplasm's diameter, where the network overlooks a zona
-constexpr double kConfirmedSize = 0.05;  // of the diameter, that tells one line from the next
-constexpr double kConfirmed = 0.006;     // of the diameter, standard deviation
+constexpr double kAgreedSize = 0.11, kAgreedPlace = 0.06;      // of the diameter
+constexpr double kThinZona = 1.2, kThickestOverlooked = 1.25;  // of the ooplasm's diameter, a zona that is overlooked
+constexpr double kConfirmedSize = 0.05;                        // of the diameter, that tells one line from the next
+constexpr double kConfirmed = 0.006;                           // of the diameter, standard deviation
 
 /// Which of several lines a border is, the second eye knows. Where that line is, is as sure as a fringe of it is wide.
-void confirm(CellBorder& border) {
-  if (!border.which_line || border.finding.verdict != Verdict::kUncertain) return;
+/// @param doubted_before  in the frame of the search: the same line is no surer in the next one
+void confirm(CellBorder& border, bool doubted_before) {
+  if (border.which_line && border.finding.verdict == Verdict::kUncertain) border.finding = Finding::found();
+  border.which_line = border.which_line || doubted_before;
+  if (!border.which_line) return;
   const double deviation = kConfirmed * border.ellipse.meanDiameter();
-  border.finding = Finding::found();
   border.covariance += Eigen::Vector3d(0.25, 0.25, 1).asDiagonal() * (deviation * deviation);
-}
-
-bool isWhole(const Frame& frame, const Ellipse& outline) {
-  constexpr int kPlaces = 72;
-  int inside = 0;
-  for (int i = 0; i < kPlaces; ++i) inside += frame.contains(outline.at(2 * M_PI * i / kPlaces)) ? 1 : 0;
-  return inside >= (1 - kLeastOutside) * kPlaces;
 }
 
 bool isSame(const Ellipse& seen, const Ellipse& measured, double size = kAgreedSize) {
@@ -48,24 +43,38 @@ bool isSame(const Ellipse& seen, const Ellipse& measured, double size = kAgreedS
          cv::norm(seen.centre - measured.centre) < kAgreedPlace * diameter;
 }
 
-/// Whether the outermost border is where a second eye sees it.
-bool hasSameOutline(const ProposedCell& proposed, const CellLayers& layers, double size = kAgreedSize) {
-  const bool zona = layers.zona_outer.finding.hasValues();
-  return isSame(proposed.zona ? *proposed.zona : proposed.ooplasm, (zona ? layers.zona_outer : layers.ooplasm).ellipse,
-                size);
+const CellBorder& outermost(const CellLayers& layers) {
+  return layers.zona_outer.finding.hasValues() ? layers.zona_outer : layers.ooplasm;
 }
 
-/// What a second eye has against what was measured. It overlooks thin zonae.
+/// Whether the outermost border is where a second eye sees it.
+bool hasSameOutline(const ProposedCell& proposed, const CellLayers& layers, double size = kAgreedSize) {
+  return isSame(proposed.zona ? *proposed.zona : proposed.ooplasm, outermost(layers).ellipse, size);
+}
+
+/// What a second eye has against what was measured: of the outermost border, not of what that is. It overlooks thin
+/// zonae.
 Finding objectionOf(const ProposedCell& proposed, const CellLayers& layers) {
   const bool zona = layers.zona_outer.finding.hasValues();
   if (hasSameOutline(proposed, layers)) return Finding::found();
   if (proposed.zona && !zona) return Finding::uncertain("a network sees a zona, and its border was not found");
   if (proposed.zona) return Finding::uncertain("a network sees the zona's border elsewhere");
-  if (isSame(proposed.ooplasm, layers.ooplasm.ellipse)) return Finding::found();
-  return Finding::uncertain("a network sees the cell's border elsewhere");
+  if (!isSame(proposed.ooplasm, layers.ooplasm.ellipse))
+    return Finding::uncertain("a network sees the cell's border elsewhere");
+  // Without a measured zona the outline would be the same.
+  const double thickness = layers.zona_outer.ellipse.meanDiameter() / layers.ooplasm.ellipse.meanDiameter();
+  const bool overlooked = proposed.perhaps_zona || thickness < kThickestOverlooked;
+  return overlooked ? Finding::found() : Finding::uncertain("a network sees no zona");
 }
 
 }  // namespace
+
+void CellDetection::doubtOneOfTwo() {
+  if (held || otherCells() == 0) return;
+  for (Finding* certain : {&finding, &size}) {
+    if (certain->isFound()) *certain = Finding::uncertain(kTwoCells);
+  }
+}
 
 CellDetectorConfig CellDetectorConfig::read(ConfigReader& reader) {
   CellDetectorConfig config;
@@ -117,7 +126,7 @@ CellDetection CellDetector::detect(const Frame& frame) const {
     take(detection, layers, finding);
     detection.polar_body = findPolarBody(frame, layers, config_.look);
   }
-  doubtOneOfTwo(detection);
+  detection.doubtOneOfTwo();
   return detection;
 }
 
@@ -136,7 +145,7 @@ std::optional<CellDetector::Seen> CellDetector::seenAt(const Frame& frame, const
     seen.second = objectionOf(proposed, seen.layers);
     const bool zona = seen.layers.zona_outer.finding.hasValues();
     seen.confirmed = zona && proposed.zona && hasSameOutline(proposed, seen.layers, kConfirmedSize);
-    if (seen.confirmed) confirm(seen.layers.zona_outer);
+    if (seen.confirmed) confirm(seen.layers.zona_outer, false);
     seen.finding = judge(seen.layers);
     if (!best || seen.rank() > best->rank()) best = seen;
     if (seen.rank() == Seen::kBest) break;
@@ -146,12 +155,14 @@ std::optional<CellDetector::Seen> CellDetector::seenAt(const Frame& frame, const
 
 CellDetection CellDetector::detect(const Frame& frame, const Proposal& proposal) const {
   CellDetection detection;
+  detection.finding = detection.size = Finding::notFound(frame.refusal());
+  if (!frame.refusal().empty()) return detection;
   detection.finding = detection.size = Finding::notFound("a network sees no cell");
   std::vector<OtherThing> skipped;
   for (const ProposedCell& proposed : proposal.cells) {
     const Ellipse& outer = proposed.zona ? *proposed.zona : proposed.ooplasm;
     if (detection.finding.hasValues()) {
-      if (!isWithin(detection, outer) && isWhole(frame, outer))
+      if (!isWithin(detection, outer) && outsideShare(frame, outer) < kLeastOutside)
         detection.others.push_back({proposed.zona ? "cell with zona" : "cell", outer});
       continue;
     }
@@ -160,18 +171,20 @@ CellDetection CellDetector::detect(const Frame& frame, const Proposal& proposal)
       detection.finding = detection.size =
           seen ? seen->finding : Finding::notFound("a network sees a cell without a clear border");
       if (proposed.held) return detection;  // another one would be taken for the cell
-      if (isWhole(frame, outer)) skipped.push_back({proposed.zona ? "cell with zona" : "cell", outer});
+      if (outsideShare(frame, outer) < kLeastOutside)
+        skipped.push_back({proposed.zona ? "cell with zona" : "cell", outer});
       continue;
     }
     detection.held = proposed.held;
     detection.second = seen->second;
     detection.confirmed = seen->confirmed;
+    detection.agreed_diameter = outermost(seen->layers).ellipse.meanDiameter();
     take(detection, seen->layers, seen->finding);
     detection.polar_body = findPolarBody(frame, seen->layers, config_.look);
   }
   if (detection.finding.hasValues()) detection.others.insert(detection.others.end(), skipped.begin(), skipped.end());
   detection.others.insert(detection.others.end(), proposal.things.begin(), proposal.things.end());
-  doubtOneOfTwo(detection);
+  detection.doubtOneOfTwo();
   return detection;
 }
 
@@ -186,7 +199,6 @@ CellDetection CellDetector::track(const Frame& frame, const CellDetection& previ
   before.zona_outer = previous.zona_outer;
   detection.held = previous.held;
   detection.second = previous.second;
-  detection.confirmed = previous.confirmed;
   CellLayers layers = followLayers(frame, before, config_.look, reach);
   const bool lost = !layers.ooplasm.finding.hasValues() ||
                     (previous.zona_outer.finding.hasValues() && !layers.zona_outer.finding.hasValues());
@@ -194,11 +206,16 @@ CellDetection CellDetector::track(const Frame& frame, const CellDetection& previ
     detection.finding = detection.size = Finding::notFound("the cell is lost: its border is not where it was");
     return detection;
   }
-  if (previous.confirmed) confirm(layers.zona_outer);
+  const double change = std::abs(outermost(layers).ellipse.meanDiameter() / previous.agreed_diameter - 1);
+  detection.agreed_diameter = previous.agreed_diameter;
+  detection.confirmed = previous.confirmed && change < kConfirmedSize;
+  if (detection.confirmed) confirm(layers.zona_outer, previous.zona_outer.which_line);
+  if (previous.second && change > kAgreedSize)
+    detection.second = Finding::uncertain("the cell has changed its size since a network saw it");
   take(detection, layers, previous.second ? judge(layers) : judgeRound(frame, layers));
   // Others are searched in the whole frame only.
   detection.others = previous.others;
-  doubtOneOfTwo(detection);
+  detection.doubtOneOfTwo();
   detection.polar_body = followPolarBody(frame, layers, config_.look, previous.polar_body);
   return detection;
 }
@@ -218,13 +235,6 @@ void CellDetector::take(CellDetection& detection, const CellLayers& layers, cons
   }
 }
 
-void CellDetector::doubtOneOfTwo(CellDetection& detection) {
-  if (detection.held || detection.otherCells() == 0) return;
-  for (Finding* certain : {&detection.finding, &detection.size}) {
-    if (certain->isFound()) *certain = Finding::uncertain(CellDetection::kTwoCells);
-  }
-}
-
 bool CellDetector::isClear(const CellBorder& border) const {
   return border.finding.hasValues() && border.strength >= kClearStrength && border.consistency >= kClearConsistency &&
          border.coverage >= config_.least_coverage && border.significance > kClearSignificance &&
@@ -232,7 +242,7 @@ bool CellDetector::isClear(const CellBorder& border) const {
 }
 
 Finding CellDetector::judge(const CellLayers& layers) const {
-  const CellBorder& outer = layers.zona_outer.finding.hasValues() ? layers.zona_outer : layers.ooplasm;
+  const CellBorder& outer = outermost(layers);
   const double diameter = outer.ellipse.meanDiameter();
   if (diameter < config_.smallest_diameter || diameter > config_.largest_diameter) {
     return Finding::notFound("no closed border of the size that is asked for");
@@ -253,7 +263,7 @@ Finding CellDetector::judgeRound(const Frame& frame, const CellLayers& layers) c
 }
 
 void CellDetector::addOther(CellDetection& detection, const CellLayers& layers) {
-  const CellBorder& outer = layers.zona_outer.finding.hasValues() ? layers.zona_outer : layers.ooplasm;
+  const CellBorder& outer = outermost(layers);
   if (isWithin(detection, outer.ellipse)) return;
   if (outer.outside < kLeastOutside) detection.others.push_back({"cell", outer.ellipse});
 }

@@ -34,6 +34,7 @@ struct CellDetection {
   std::vector<OtherThing> others;  ///< other whole cells; with a second eye bubbles and debris, too
   bool held = false;               ///< a second eye sees it at the holding pipette: others do not make it uncertain
   std::optional<Finding> second;   ///< whether a second eye has nothing against it; none: there was none
+  double agreed_diameter = 0;      ///< px, of the outermost border when the second eye looked; 0: it did not
   bool confirmed = false;          ///< it sees a zona with its outer border in the same place
 
   /// Removes the others for whose ellipse `part_of_another_thing` is true. Without other cells the one cell is
@@ -53,6 +54,9 @@ struct CellDetection {
     return std::count_if(others.begin(), others.end(), [](const OtherThing& thing) { return thing.isCell(); });
   }
 
+  /// Of two cells neither is sure, unless it is the one that is held.
+  void doubtOneOfTwo();
+
   /// The outermost border that was found.
   const CellBorder& outer() const { return zona_outer.finding.hasValues() ? zona_outer : ooplasm; }
 };
@@ -67,8 +71,8 @@ class CellDetector {
 
   /// Searches the whole frame.
   CellDetection detect(const Frame& frame) const;
-  /// Searches where a second eye sees cells. A cell is found where both eyes see the same: its size, its place, and
-  /// whether it has a zona.
+  /// Searches where a second eye sees cells. A cell is found where both eyes see the same outermost border; whose
+  /// border that is, the cell's or its zona's, is what the fits say.
   CellDetection detect(const Frame& frame, const Proposal& proposal) const;
   /// Searches near a cell that was found in an earlier frame: moved by at most `reach` (px), of
   /// nearly the same size.
@@ -94,7 +98,6 @@ class CellDetector {
   Finding judgeRound(const Frame& frame, const CellLayers& layers) const;
   /// @param size  verdict of the diameter
   static void take(CellDetection& detection, const CellLayers& layers, const Finding& size);
-  static void doubtOneOfTwo(CellDetection& detection);
   static void addOther(CellDetection& detection, const CellLayers& layers);
 
   CellDetectorConfig config_;

@@ -168,10 +168,8 @@ CellLayers findLayers(const Frame& frame, const CellBorder& main, const std::str
     const bool ring = isRing(inside) || (isSecondBorder(inside) && inside.significance > kBorderSignificance) ||
                       (isRing(beyond) && beyond.polarity != Polarity::kFalling);
     // The ooplasm is not always in the middle of its zona: the centre is in doubt too.
-    if (ring && layers.ooplasm.finding.isFound()) {
+    if (ring && layers.ooplasm.finding.isFound())
       layers.ooplasm.finding = Finding::uncertain("a faint second ring is seen: this may be a zona's border");
-      layers.ooplasm.which_line = true;
-    }
     return layers;
   }
   const double gap = radiusOf(layers.zona_outer) - radiusOf(ooplasm);
@@ -219,7 +217,6 @@ CellLayers followLayers(const Frame& frame, const CellLayers& previous, const st
   // What was doubtful in the frame before is so here.
   if (previous.ooplasm.finding.verdict == Verdict::kUncertain) {
     layers.ooplasm.finding = previous.ooplasm.finding;
-    layers.ooplasm.which_line = previous.ooplasm.which_line;
     layers.ooplasm.centred = previous.ooplasm.centred;
   }
   layers.main = layers.ooplasm;

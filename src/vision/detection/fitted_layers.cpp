@@ -188,6 +188,7 @@ void refitLayersTo(const Frame& frame, const std::string& look, const CellLayers
   CellBorder& outer = layers.zona_outer;
   if (!layers.zona_inner.finding.hasValues() ||
       previous.zona_inner.ellipse.meanDiameter() >= previous.zona_outer.ellipse.meanDiameter()) {
+    if (!outer.finding.isFound()) return;
     outer.finding = previous.zona_outer.finding;
     outer.centred = previous.zona_outer.centred;
     return;

@@ -12,6 +12,11 @@ void PipetteDetection::setCovariance(double along, double across) {
   covariance = turn * Eigen::Vector2d(along * along, across * across).asDiagonal() * turn.transpose();
 }
 
+void PipetteDetection::hear(const Finding& second_eye) {
+  second = second_eye;
+  if (finding.isFound()) finding = second_eye;
+}
+
 double PipetteDetection::deviationAlong() const {
   const Eigen::Vector2d axis(std::cos(direction), std::sin(direction));
   return std::sqrt(std::max(0.0, axis.dot(covariance * axis)));

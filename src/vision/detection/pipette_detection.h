@@ -23,6 +23,8 @@ struct PipetteDetection {
   /// Sets the covariance of the end for the direction as it is.
   /// @param along, across  px, standard deviations
   void setCovariance(double along, double across);
+  /// What a second eye has against it, found: nothing. What it doubts is not sure.
+  void hear(const Finding& second_eye);
   double deviationAlong() const;  ///< px, standard deviation of the end along the axis
 };
 

@@ -18,11 +18,6 @@ constexpr double kProposedMargin = 2;                // of the half width, of th
 constexpr int kFinest = 1, kFinestBesideBorder = 2;  // see AxisSearch::finer
 constexpr double kBesideBorder = 120;                // px
 
-/// What a second eye doubts is not sure.
-void takeSecond(PipetteDetection& found) {
-  if (found.finding.isFound() && found.second) found.finding = *found.second;
-}
-
 }  // namespace
 
 PipetteDetectorConfig PipetteDetectorConfig::read(ConfigReader& reader) {
@@ -74,10 +69,11 @@ PipetteDetection PipetteDetector::search(const Frame& frame, AxisSearch search, 
 
 PipetteDetection PipetteDetector::detect(const Frame& frame, const ProposedPipette& proposed) const {
   PipetteDetection found;
-  found.finding = Finding::notFound("the pipette comes from another side");
-  const double direction = proposed.direction();
-  if (!config_.any_direction && angleBetween(direction, config_.direction) > config_.tolerance) return found;
-  const double tolerance = proposed.tolerance;
+  found.finding = Finding::notFound(frame.refusal());
+  if (!frame.refusal().empty()) return found;
+  found.finding = Finding::notFound("the pipette comes from another side, or is not in the region that is told");
+  if (!isAllowed(proposed)) return found;
+  const double direction = proposed.direction(), tolerance = proposed.tolerance;
   found = search(frame, searchAt(frame, proposed), kFinest);
   if (!found.finding.hasValues() || cv::norm(found.end - proposed.end) > tolerance) {
     const PipetteDetection refined =
@@ -88,10 +84,18 @@ PipetteDetection PipetteDetector::detect(const Frame& frame, const ProposedPipet
     found.finding = Finding::notFound("a network sees a pipette whose end cannot be measured");
     return found;
   }
-  const bool same = cv::norm(found.end - proposed.end) <= tolerance;
-  found.second = same ? Finding::found() : Finding::uncertain("a network sees its end elsewhere");
-  takeSecond(found);
+  found.hear(isAtEnd(found, proposed) ? Finding::found() : Finding::uncertain(kSeenElsewhere));
   return found;
+}
+
+bool PipetteDetector::isAllowed(const ProposedPipette& proposed) const {
+  const cv::Rect2d told(region());
+  return (told.empty() || told.contains(proposed.end)) &&
+         (config_.any_direction || angleBetween(proposed.direction(), config_.direction) <= config_.tolerance);
+}
+
+bool PipetteDetector::isAtEnd(const PipetteDetection& pipette, const ProposedPipette& proposed) {
+  return cv::norm(pipette.end - proposed.end) <= proposed.tolerance;
 }
 
 AxisSearch PipetteDetector::searchAt(const Frame& frame, const ProposedPipette& proposed) const {
@@ -137,8 +141,7 @@ PipetteDetection PipetteDetector::track(const Frame& frame, const PipetteDetecti
   axis.taper = previous.taper;
   const bool injection = config_.kind == "injection";
   found = refine(frame, axis, previous.end, reach + (injection ? kTipReach : kMouthReach), injection ? 2 : 1);
-  found.second = previous.second;
-  takeSecond(found);
+  if (previous.second) found.hear(*previous.second);
   return found;
 }
 

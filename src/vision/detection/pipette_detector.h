@@ -33,8 +33,14 @@ class PipetteDetector {
   /// Searches the whole frame, or the region.
   PipetteDetection detect(const Frame& frame) const;
   /// Searches where a second eye sees a pipette. It is found where both eyes see its end in the same place; where
-  /// nothing is measured, it is uncertain and where the second eye sees it.
+  /// nothing is measured, it is not found.
   PipetteDetection detect(const Frame& frame, const ProposedPipette& proposed) const;
+  /// Whether the one that is searched may be there, by what is told of direction and region.
+  bool isAllowed(const ProposedPipette& proposed) const;
+  /// Whether the end that was measured is the one that a second eye sees.
+  static bool isAtEnd(const PipetteDetection& pipette, const ProposedPipette& proposed);
+  static constexpr const char* kSeenElsewhere = "a network sees its end elsewhere";
+
   /// Searches near a pipette that was found in an earlier frame: its end moved by at most `reach` (px).
   PipetteDetection track(const Frame& frame, const PipetteDetection& previous, double reach) const;
 

@@ -16,17 +16,15 @@ struct ProposedCell {
   Ellipse ooplasm;              ///< px; of a cell or vesicle without a zona all of it
   std::optional<Ellipse> zona;  ///< px, its outer border; none: no zona is seen
   bool perhaps_zona = false;    ///< parts of a zona are seen: whether there is one is not known
-  double probability = 0;       ///< of being a cell
   bool held = false;            ///< at the mouth of a holding pipette
 };
 
 /// Where a second eye sees a pipette, to some pixels.
 struct ProposedPipette {
-  cv::Point2d end;         ///< px, tip or middle of the mouth
-  cv::Point2d entry;       ///< px, where its axis leaves the frame
-  double half_width = 0;   ///< px, mean over its length
-  double tolerance = 0;    ///< px, within which an end is this one
-  double probability = 0;  ///< of being a pipette of this kind
+  cv::Point2d end;        ///< px, tip or middle of the mouth
+  cv::Point2d entry;      ///< px, where its axis leaves the frame
+  double half_width = 0;  ///< px, mean over its length
+  double tolerance = 0;   ///< px, within which an end is this one
 
   double direction() const;  ///< rad, from the end towards the shaft, from x towards y
 };

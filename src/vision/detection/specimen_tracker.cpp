@@ -9,6 +9,7 @@
 namespace microinjection {
 namespace {
 
+constexpr double kHeld = 0.25;     // of the cell's diameter, a mouth from its border
 constexpr double kNearCell = 1.6;  // over the cell's radius: of a tip this near the gap or the dimple is measured
 const cv::Size kSamples(96, 72);
 constexpr double kSameScene = 0.5;  // correlation of two frames' samples, at least
@@ -56,6 +57,13 @@ bool belongsTo(const PipetteDetection& pipette, const Ellipse& thing) {
   const cv::Point2d axis(std::cos(pipette.direction), std::sin(pipette.direction));
   const cv::Point2d away = thing.centre - pipette.end;
   return away.dot(axis) > 0 && std::abs(away.cross(axis)) < pipette.half_width;
+}
+
+/// Whether a mouth that is sure is at the cell's border: without a pipette the border itself looks like an unclear
+/// mouth.
+bool isHeldBy(const PipetteDetection& holding, const CellDetection& cell) {
+  const Ellipse& outer = cell.outer().ellipse;
+  return holding.finding.isFound() && std::abs(outer.distance(holding.end)) < kHeld * outer.meanDiameter();
 }
 
 Dimple indentationOf(const Frame& frame, const SpecimenView& view) {
@@ -144,6 +152,10 @@ const SpecimenView& SpecimenTracker::next(const Frame& frame) {
                         [&](const PipetteDetector& detector) { return search.pipette(detector); });
   if (view.holding.finding.isFound())
     view.cell.dismissOthers([&](const Ellipse& thing) { return belongsTo(view.holding, thing); });
+  if (view.cell.held && !isHeldBy(view.holding, view.cell)) {
+    view.cell.held = false;
+    view.cell.doubtOneOfTwo();
+  }
   measureIndentation(frame, view);
   view_ = view;
   return view_;

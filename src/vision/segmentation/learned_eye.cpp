@@ -89,7 +89,7 @@ std::optional<ProposedPipette> pipetteIn(const Segmentation& segmentation, bool 
     const double length = std::hypot(shaft.x, shaft.y), half_width = 0.5 * region.area / std::max(length, 1e-6);
     if (length < kLeastLength * segmentation.framePixels() || length < kLongerThanWide * half_width) continue;
     return ProposedPipette{way->end, way->entry, half_width,
-                           kTolerance * segmentation.framePixels() + kEndOfWidth * half_width, region.probability};
+                           kTolerance * segmentation.framePixels() + kEndOfWidth * half_width};
   }
   return std::nullopt;
 }
@@ -134,7 +134,6 @@ Proposal LearnedEye::proposalOf(const Segmentation& segmentation) {
     ProposedCell cell;
     cell.ooplasm = {region.centre, {region.semi_major, region.semi_minor}, region.angle};
     addZona(segmentation, cell);
-    cell.probability = region.probability;
     proposal.cells.push_back(cell);
   }
   for (const auto& [kind, what] :

@@ -42,11 +42,9 @@ class SecondEyeTest : public testing::Test {
     eye_->proposal.cells.push_back({{pixel(0, 0) + cv::Point2d(3, -2), {1.02 * ooplasm, 0.99 * ooplasm}, 0.3},
                                     Ellipse{pixel(0, 0) + cv::Point2d(-2, 4), {1.03 * radius, 1.01 * radius}, 0.1},
                                     false,
-                                    0.9,
                                     true});
-    eye_->proposal.injection =
-        ProposedPipette{pixel(45e-6, 40e-6) + cv::Point2d(7, 5), pixel(110e-6, 117e-6), 15, 20, 0.9};
-    eye_->proposal.holding = ProposedPipette{pixel(0, -37e-6) + cv::Point2d(-6, 3), pixel(0, -140e-6), 100, 20, 0.9};
+    eye_->proposal.injection = ProposedPipette{pixel(45e-6, 40e-6) + cv::Point2d(7, 5), pixel(110e-6, 117e-6), 15, 20};
+    eye_->proposal.holding = ProposedPipette{pixel(0, -37e-6) + cv::Point2d(-6, 3), pixel(0, -140e-6), 100, 20};
   }
 
   static MicroscopeConfig microscopeConfig() {
@@ -165,7 +163,86 @@ TEST_F(SecondEyeTest, ADirectionThatIsToldHolds) {
   SpecimenTrackerConfig config = anyDirection();
   config.injection.any_direction = false;
   config.injection.direction = M_PI;  // from the left
-  EXPECT_EQ(seen(config).injection.finding.reason, "the pipette comes from another side");
+  EXPECT_EQ(seen(config).injection.finding.reason,
+            "the pipette comes from another side, or is not in the region that is told");
+}
+
+/// The search of the whole frame would find the same end, whose direction is told.
+TEST_F(SecondEyeTest, AnEndThatItSeesElsewhereIsNotSureByAnotherSearch) {
+  SpecimenTrackerConfig config = anyDirection();
+  config.injection.any_direction = false;
+  config.injection.direction = eye_->proposal.injection->direction();
+  eye_->proposal.injection->end += cv::Point2d(60, -71);  // up the shaft
+  eye_->proposal.injection->half_width = 5;
+  const PipetteDetection told = seen(config).injection;
+  EXPECT_LT(cv::norm(told.end - pixel(45e-6, 40e-6)), 5);
+  EXPECT_EQ(told.finding.reason, "a network sees its end elsewhere");
+}
+
+/// What it takes for a holding pipette is no needle, however much glass is there.
+TEST_F(SecondEyeTest, APipetteOfTheOtherKindIsNotSure) {
+  scene_.injection->axis = {0, 0, 1};
+  scene_.injection->tip = {0, 0, 60e-6};
+  eye_->proposal.injection.reset();
+  eye_->proposal.holding = ProposedPipette{pixel(0, 60e-6), pixel(0, 155e-6), 15, 20};
+  eye_->proposal.glass = {cv::Mat(96, 128, CV_32F, cv::Scalar(1)), 1 / 10.9, {0, 0}, true};
+  const PipetteDetection needle = seen(anyDirection()).injection;
+  EXPECT_LT(cv::norm(needle.end - pixel(0, 60e-6)), 5);
+  EXPECT_EQ(needle.finding.reason, "a network sees a pipette of the other kind there");
+  // Where it sees glass of no kind that it can tell, the needle is one.
+  eye_->proposal.holding.reset();
+  EXPECT_EQ(seen(anyDirection()).injection.finding.reason, "");
+}
+
+TEST_F(SecondEyeTest, APipetteThatIsNotInTheRegionThatIsToldIsNoOne) {
+  SpecimenTrackerConfig config = anyDirection();
+  config.injection.region = {0, 0, 200, 1000};
+  EXPECT_FALSE(seen(config).injection.finding.hasValues());
+}
+
+TEST_F(SecondEyeTest, AThickZonaIsNotOverlooked) {
+  scene_.cells.front() = CellScene::round({0, 0}, kSeenRadius, 12e-6, 0);
+  ProposedCell& told = eye_->proposal.cells.front();
+  told.zona.reset();
+  told.ooplasm = {pixel(0, 0), {26e-6 / kSeenPixel, 26e-6 / kSeenPixel}, 0};
+  const CellDetection cell = seen(anyDirection()).cell;
+  ASSERT_TRUE(cell.zona_outer.finding.hasValues());
+  EXPECT_EQ(cell.second->reason, "a network sees no zona");
+  EXPECT_FALSE(cell.size.isFound());
+  told.perhaps_zona = true;  // then it does not know
+  EXPECT_TRUE(seen(anyDirection()).cell.second->isFound());
+}
+
+/// From frame to frame a little; what the network said holds for the size that it saw, and then it looks again.
+TEST_F(SecondEyeTest, ACellThatGrowsIsNotSureForEver) {
+  SpecimenTracker tracker(anyDirection(), eye_);
+  const double seen = tracker.next(frame()).cell.outer().ellipse.meanDiameter();
+  double diameter = seen;
+  for (int i = 1; i <= 24; ++i) {
+    scene_.cells.front() = CellScene::round({0, 0}, kSeenRadius * (1 + 0.007 * i), 6e-6, 0);
+    const CellDetection& cell = tracker.next(frame()).cell;
+    ASSERT_TRUE(cell.finding.hasValues()) << i;
+    diameter = cell.outer().ellipse.meanDiameter();
+    EXPECT_TRUE(diameter < 1.12 * seen || !cell.size.isFound() || eye_->looks > 1) << i << ' ' << diameter / seen;
+  }
+  EXPECT_GT(diameter, 1.14 * seen);
+}
+
+/// A pipette that has gone no longer tells which of two cells is the one.
+TEST_F(SecondEyeTest, ACellThatIsReleasedIsOneOfTwo) {
+  ProposedCell beside = eye_->proposal.cells.front();
+  beside.ooplasm.centre += cv::Point2d(-400, 0);
+  beside.zona->centre += cv::Point2d(-400, 0);
+  beside.held = false;
+  eye_->proposal.cells.push_back(beside);
+  SpecimenTracker tracker(anyDirection(), eye_);
+  EXPECT_EQ(tracker.next(frame()).cell.size.reason, "");
+  EXPECT_EQ(tracker.next(frame()).cell.size.reason, "");
+  scene_.holding.reset();
+  eye_->proposal.holding.reset();
+  const SpecimenView& view = tracker.next(frame());
+  EXPECT_FALSE(view.holding.finding.isFound());
+  EXPECT_EQ(view.cell.size.reason, CellDetection::kTwoCells);
 }
 
 TEST_F(SecondEyeTest, LooksWhereSomethingIsSearchedOnly) {
