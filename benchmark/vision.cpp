@@ -4,6 +4,7 @@
 #include <boost/program_options.hpp>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
@@ -75,9 +76,12 @@ void measureReal(const Micrographs& micrographs, const TakeRow& take) {
   if (only != kStacks) sequenceRows(micrographs, vision_options.eye, take);
 }
 
-void writeContactSheet(const Micrographs& micrographs) {
+void writeContactSheet(const std::vector<SheetImage>& images) {
+  const std::string extension = std::filesystem::path(vision_options.contact_sheet).extension();
+  if (extension != ".png" && extension != ".jpg")
+    throw ConfigError("--contact-sheet " + vision_options.contact_sheet + ": must end in .png or .jpg");
   std::vector<unsigned char> file;
-  cv::imencode(".png", contactSheet(micrographs, vision_options.eye), file);
+  cv::imencode(extension, contactSheet(images, vision_options.eye), file);
   writeFileAtomically(vision_options.contact_sheet, std::string(file.begin(), file.end()));
 }
 
@@ -95,16 +99,18 @@ std::string table() {
     summary.add(row);
   };
   const std::string& only = vision_options.only;
+  const bool sheet = !vision_options.contact_sheet.empty();
   for (const VisionCondition& condition : visionConditions()) {
     if (!only.empty() && condition.name != only) continue;
     renderedRows(condition, vision_options.seed, vision_options.images, vision_options.pipettes_only,
                  vision_options.eye, take);
   }
   const char* folder = std::getenv(kFolderVariable);
+  if (sheet && folder == nullptr) writeContactSheet(renderedSheet(vision_options.seed));
   if (folder != nullptr && (only.empty() || isRealSet(only))) {
     Micrographs micrographs(folder);
     if (!vision_options.micrographs.empty()) micrographs.keepOnly(vision_options.micrographs);
-    if (!vision_options.contact_sheet.empty()) writeContactSheet(micrographs);
+    if (sheet) writeContactSheet(realSheet(micrographs, vision_options.eye != nullptr));
     measureReal(micrographs, take);
   }
   summary.print();
@@ -135,7 +141,9 @@ int main(int argc, char** argv) {
       "both: a network tells where things are; geometry: without it");
   add("told", po::bool_switch(&options.told),
       "real images: look and directions of the pipettes are those of the image, not the default ones");
-  add("contact-sheet", po::value(&options.contact_sheet), "PNG to write: the real images with what is found in them");
+  add("contact-sheet", po::value(&options.contact_sheet),
+      "PNG or JPEG to write: the real images, or where their folder is not named two rendered ones of each condition, "
+      "with what is found in them");
   return microinjection::benchMain(argc, argv,
                                    "bench_vision: errors of the vision on rendered images, and on real ones where "
                                    "MICROINJECTION_MICROGRAPHS names their folder.",

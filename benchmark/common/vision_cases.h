@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "benchmark/common/vision_row.h"
-#include "vision/detection/proposal.h"
+#include "vision/detection/specimen_tracker.h"
+#include "vision/microscope/microscope.h"
 #include "vision/microscope/microscope_config.h"
 #include "vision/microscope/scene_draw.h"
 
@@ -21,6 +22,18 @@ struct VisionCondition {
 };
 
 std::vector<VisionCondition> visionConditions();
+
+/// An image with its truth.
+struct RenderedImage {
+  cv::Mat image;
+  SceneTruth truth;
+};
+
+/// @param microscope  of the condition
+RenderedImage renderedImage(const VisionCondition& condition, Microscope& microscope, std::uint64_t seed);
+
+/// What the condition's images are searched with: look, diameters and directions are told.
+SpecimenTrackerConfig trackerConfig(const VisionCondition& condition);
 
 /// Rows of `images` rendered images, with the seeds from `first` on. The constants were chosen with seeds
 /// below 100000.

@@ -119,13 +119,9 @@ void polarBodyRow(const ImageRows& rows, const PolarBody& body, const CellTruth&
   rows.add("polar_body_angle", body.finding, stated(turn * kInDegrees, body.deviation * kInDegrees), 0, kPolarBody);
 }
 
-PipetteDetection pipetteRows(const ImageRows& rows, const std::string& what, const Frame& frame, const CameraView& view,
-                             FrameSearch& search, const std::optional<PipetteTruth>& truth, double goal) {
-  PipetteDetectorConfig config;
-  config.kind = what == "tip" ? "injection" : "holding";
-  const Eigen::Vector2d shaft = view.imageDirection({0, what == "tip" ? 1 : -1});
-  config.direction = std::atan2(shaft.y(), shaft.x());
-  const PipetteDetector detector(config);
+PipetteDetection pipetteRows(const ImageRows& rows, const std::string& what, const Frame& frame,
+                             const PipetteDetector& detector, FrameSearch& search,
+                             const std::optional<PipetteTruth>& truth, double goal) {
   double time = 0, following = 0;
   const PipetteDetection found = timed(time, [&] { return search.pipette(detector); });
   if (!truth) rows.addAbsent(what, found.finding, time);
@@ -189,17 +185,8 @@ void seenRows(const ImageRows& rows, const SeenCell& seen, const SceneTruth& tru
 
 /// Times of whole frames, as the node vision has them: of the first one, which is searched, and of the same one again,
 /// in which what was found is tracked. With `_missing` where cell, tip or mouth was not found.
-void frameTimeRows(const ImageRows& rows, const CellDetectorConfig& cell, const CameraView& view,
-                   const std::shared_ptr<SecondEye>& eye, const cv::Mat& image) {
-  ConfigReader nothing(YAML::Node(YAML::NodeType::Map), "");
-  SpecimenTrackerConfig config = SpecimenTrackerConfig::read(nothing);
-  config.cell = cell;
-  const auto direction = [&](double y) {
-    const Eigen::Vector2d shaft = view.imageDirection({0, y});
-    return std::atan2(shaft.y(), shaft.x());
-  };
-  config.injection.direction = direction(1);
-  config.holding.direction = direction(-1);
+void frameTimeRows(const ImageRows& rows, const SpecimenTrackerConfig& config, const std::shared_ptr<SecondEye>& eye,
+                   const cv::Mat& image) {
   SpecimenTracker tracker(config, eye);
   double first = 0;
   const SpecimenView seen = timed(first, [&] { return tracker.next(Frame(image)); });
@@ -211,32 +198,49 @@ void frameTimeRows(const ImageRows& rows, const CellDetectorConfig& cell, const 
 
 }  // namespace
 
+RenderedImage renderedImage(const VisionCondition& condition, Microscope& microscope, std::uint64_t seed) {
+  const DrawnScene drawn = drawScene(condition.draw, condition.microscope.camera, seed);
+  return {microscope.render(drawn.scene, condition.focus, seed), drawn.truth};
+}
+
+SpecimenTrackerConfig trackerConfig(const VisionCondition& condition) {
+  ConfigReader nothing(YAML::Node(YAML::NodeType::Map), "");
+  SpecimenTrackerConfig config = SpecimenTrackerConfig::read(nothing);
+  config.cell.smallest_diameter = 200;
+  config.cell.largest_diameter = 640;
+  config.cell.look = condition.microscope.look.kind;
+  const auto direction = [&](double y) {
+    const Eigen::Vector2d shaft = condition.microscope.camera.imageDirection({0, y});
+    return std::atan2(shaft.y(), shaft.x());
+  };
+  config.injection.direction = direction(1);
+  config.holding.direction = direction(-1);
+  config.injection.any_direction = config.holding.any_direction = false;
+  return config;
+}
+
 void renderedRows(const VisionCondition& condition, std::uint64_t first, int images, bool pipettes_only,
                   const std::shared_ptr<SecondEye>& eye, const TakeRow& take) {
   cv::setNumThreads(1);
   Microscope microscope(condition.microscope);
-  CellDetectorConfig config;
-  config.smallest_diameter = 200;
-  config.largest_diameter = 640;
-  config.look = condition.microscope.look.kind;
-  const CellDetector detector(config);
-  const CameraView& view = condition.microscope.camera;
+  const SpecimenTrackerConfig config = trackerConfig(condition);
+  const CellDetector detector(config.cell);
+  const PipetteDetector injection(config.injection), holding(config.holding);
   for (int i = 0; i < images; ++i) {
     const std::uint64_t seed = first + static_cast<std::uint64_t>(i);
-    const DrawnScene drawn = drawScene(condition.draw, view, seed);
-    const cv::Mat image = microscope.render(drawn.scene, condition.focus, seed);
+    const RenderedImage drawn = renderedImage(condition, microscope, seed);
     const ImageRows rows(condition.name, seed, take);
     double reading = 0;
-    const Frame frame = timed(reading, [&] { return Frame(image); });
+    const Frame frame = timed(reading, [&] { return Frame(drawn.image); });
     FrameSearch search(frame, eye.get());
     SeenCell seen;
     if (!pipettes_only) seen = seenCell(detector, frame, search);
-    const PipetteDetection needle = pipetteRows(rows, "tip", frame, view, search, drawn.truth.injection, kTip);
-    pipetteRows(rows, "mouth", frame, view, search, drawn.truth.holding, kMouth);
+    const PipetteDetection needle = pipetteRows(rows, "tip", frame, injection, search, drawn.truth.injection, kTip);
+    pipetteRows(rows, "mouth", frame, holding, search, drawn.truth.holding, kMouth);
     if (pipettes_only) continue;
     addNeedle(frame, needle, seen);
     seenRows(rows, seen, drawn.truth, reading);
-    frameTimeRows(rows, config, view, eye, image);
+    frameTimeRows(rows, config, eye, drawn.image);
   }
 }
 

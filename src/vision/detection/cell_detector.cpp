@@ -43,6 +43,12 @@ bool isSame(const Ellipse& seen, const Ellipse& measured, double size = kAgreedS
          cv::norm(seen.centre - measured.centre) < kAgreedPlace * diameter;
 }
 
+/// Whether the size of the first one is nearer to what was measured than that of the second one.
+bool isNearer(const Ellipse& first, const Ellipse& second, const Ellipse& measured) {
+  const double diameter = measured.meanDiameter();
+  return std::abs(first.meanDiameter() - diameter) < std::abs(second.meanDiameter() - diameter);
+}
+
 const CellBorder& outermost(const CellLayers& layers) {
   return layers.zona_outer.finding.hasValues() ? layers.zona_outer : layers.ooplasm;
 }
@@ -56,6 +62,8 @@ bool hasSameOutline(const ProposedCell& proposed, const CellLayers& layers, doub
 /// zonae.
 Finding objectionOf(const ProposedCell& proposed, const CellLayers& layers) {
   const bool zona = layers.zona_outer.finding.hasValues();
+  if (proposed.zona && !zona && isNearer(*proposed.zona, proposed.ooplasm, layers.ooplasm.ellipse))
+    return Finding::uncertain("a network sees a zona's border where the cell's is measured");
   if (hasSameOutline(proposed, layers)) return Finding::found();
   if (proposed.zona && !zona) return Finding::uncertain("a network sees a zona, and its border was not found");
   if (proposed.zona) return Finding::uncertain("a network sees the zona's border elsewhere");

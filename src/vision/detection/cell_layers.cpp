@@ -25,9 +25,11 @@ constexpr double kOff = 0.8;            // px, of a border from where it was sea
 constexpr double kBesideRim = 2;        // px, from the rim, that is another border
 constexpr double kSharpRim = 6;         // px, line of a zona in focus, at most
 constexpr double kLeastResidual = 0.5, kMostResidual = 0.0025;  // px; of the diameter: of a sure ellipse
-constexpr double kOoplasmPlace = 1.0;                           // of the ooplasm's: the rim is refracted beside it
-constexpr double kMixedLines = 0.23;                            // see linesOutside()
-constexpr double kWidestOoplasmRim = 0.2;                       // of the radius
+constexpr double kSameLineResidual = 0.004;                     // of the diameter, of one line all round
+constexpr double kThickerThanHalo = 1.15;  // of the diameter, a zona: the halo of a vesicle is like a thin one
+constexpr double kOoplasmPlace = 1.0;      // of the ooplasm's: the rim is refracted beside it
+constexpr double kMixedLines = 0.23;       // see linesOutside()
+constexpr double kWidestOoplasmRim = 0.2;  // of the radius
 
 /// @param rim  px, widest dark rim
 CellBorder refined(const Frame& frame, const CellBorder& border, double place, double rim) {
@@ -79,7 +81,13 @@ void warn(CellLayers& layers) {
   const bool zona = layers.zona_outer.finding.hasValues();
   if (zona && layers.ooplasm.rim == 0)
     doubt(layers.ooplasm, "the ooplasm's dark rim is not seen: its border is up to a rim off", true);
-  if (zona && layers.zona_outer.rim == 0) doubt(layers.zona_outer, "the zona's outer border is not a dark line", true);
+  CellBorder& outer = layers.zona_outer;
+  if (zona && outer.rim == 0 && outer.finding.isFound()) {
+    doubt(outer, "the zona's outer border is not a dark line", true);
+    // Whoever knows that the zona ends there knows the line, unless it is another one on each side or a halo.
+    outer.which_line = outer.residual < kSameLineResidual * outer.ellipse.meanDiameter() &&
+                       outer.ellipse.meanDiameter() > kThickerThanHalo * layers.ooplasm.ellipse.meanDiameter();
+  }
   for (CellBorder* border : all) {
     if (border->polarity == Polarity::kEither) doubt(*border, "DIC shades borders: they are displaced", false);
     if (border->residual > std::max(kLeastResidual, kMostResidual * border->ellipse.meanDiameter())) {
@@ -99,8 +107,7 @@ void doubtWithinRing(const Frame& frame, const std::string& look, CellBorder& ou
   const bool clear = beyond.consistency > kRingConsistency && beyond.contrast > kRingContrast * outer.contrast;
   if (!isRing(beyond) || !clear || beyond.polarity == Polarity::kFalling) return;
   outer.finding = Finding::uncertain("a ring is seen outside of the border: it may be the zona's inner one");
-  outer.centred = false;
-  outer.which_line = true;
+  outer.centred = outer.which_line = false;
 }
 
 /// Takes the certainty in DIC from an outer border that is another line on each side.

@@ -87,7 +87,22 @@ Frame::Frame(const cv::Mat& image) {
     refusal_ = high < kLeastContrast ? "the frame is black" : "the frame is all one grey";
   }
   // A format of few levels hides noise; rounding is then the noise.
-  noise_ = std::max(noiseOf(grey_), image.depth() == CV_8U ? 0.3 / 255 : 1e-5);
+  least_noise_ = image.depth() == CV_8U ? 0.3 / 255 : 1e-5;
+  noise_ = std::max(noiseOf(grey_), least_noise_);
+}
+
+Frame Frame::resized(int level) const {
+  Frame frame = *this;
+  frame.levels_.clear();
+  if (!refusal_.empty() || level == 0) return frame;
+  if (level < 0) {
+    const double scale = std::ldexp(1, -level);
+    cv::resize(grey_, frame.grey_, {}, scale, scale, cv::INTER_CUBIC);
+    return frame;
+  }
+  frame.grey_ = this->level(level);
+  frame.noise_ = std::max(noiseOf(frame.grey_), least_noise_);
+  return frame;
 }
 
 bool Frame::contains(const cv::Point2d& point, double margin) const {

@@ -29,11 +29,14 @@ class Frame {
   /// Place in a reduced frame of a place (px) in the frame, and back.
   static cv::Point2d toLevel(const cv::Point2d& point, int level);
   static cv::Point2d fromLevel(const cv::Point2d& point, int level);
+  /// The frame reduced by 2^level as a frame of its own; enlarged by 2^-level where that is negative.
+  Frame resized(int level) const;
 
  private:
   std::string refusal_;
   cv::Mat grey_;
   double noise_ = 0, background_ = 0;
+  double least_noise_ = 0;  ///< of the format
   mutable std::vector<cv::Mat> levels_;
 };
 

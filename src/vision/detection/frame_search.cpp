@@ -45,7 +45,7 @@ PipetteDetection FrameSearch::pipette(const PipetteDetector& detector) {
   PipetteDetection other = detector.detect(frame_);
   if (!other.finding.hasValues()) return found;
   const std::optional<ProposedPipette>& other_kind = needle ? proposal().holding : proposal().injection;
-  if (seen && detector.isAllowed(*seen) && !PipetteDetector::isAtEnd(other, *seen))
+  if (seen && detector.isAllowed(*seen) && !detector.isAtEnd(other, *seen))
     other.hear(Finding::uncertain(PipetteDetector::kSeenElsewhere));
   else if (other_kind && isOn(*other_kind, other.end))
     other.hear(Finding::uncertain("a network sees a pipette of the other kind there"));

@@ -199,6 +199,7 @@ HoldingMouth findMouth(const PipetteStrip& strip, double coarse, double reach, d
     mouth.doubt = "the pipette is out of focus: its mouth is displaced";
   // In DIC an edge is a line, whose steepest slope lies beside it.
   if (!walls.is_signed) mouth.doubt = "the walls are shaded from one side: the mouth is displaced";
+  mouth.faint = mouth.doubt.empty() && mouth.score < kSureArcScore && std::abs(mouth.slant) <= kMostUneven;
   if (mouth.score < kSureArcScore) mouth.doubt = "the lips of the mouth are not clear";
   if (std::abs(mouth.slant) > kMostUneven) mouth.doubt = "the lips are not at the same place of the axis";
   return mouth;

@@ -15,6 +15,7 @@ struct HoldingMouth {
   double score = 0;       ///< 0..1, edge along both lips relative to that of the walls
   double half_width = 0;  ///< columns, of the walls
   std::string doubt;      ///< empty, or why the mouth is not certain
+  bool faint = false;     ///< it is not certain, since its lips are not clear
 };
 
 /// Fits a round lip to the end of each wall: an arc that is tangent to the outer edge of the wall and

@@ -20,6 +20,7 @@ constexpr double kAxisStripStep = 2;        // px, of the strip that gives the a
 constexpr double kNearMouth = 8, kMouthRows = 36, kMouthBlur = 1.3;  // px, of the strip that shows the mouth
 constexpr double kWitnessReach = 14;                                 // px beside lips that are not clear
 constexpr int kMouthMargin = 18;                                     // px beside the walls
+constexpr double kLeastSymmetry = 0.6, kSureSymmetry = 0.9;          // of the walls behind a mouth
 
 /// Row of a mouth whose lips are not clearly round: where an edge across ends both walls, if there is one.
 double secondWitness(const PipetteStrip& strip, const HoldingMouth& mouth) {
@@ -73,7 +74,13 @@ PipetteDetection refineHolding(const Frame& frame, PipetteAxis axis, const cv::P
   found.symmetry = fit.symmetry;
   found.clearness = mouth.score;
   found.setCovariance(mouth.deviation, fit.offset_deviation * kAxisStripStep);
+  found.which_end = mouth.faint;
   found.finding = mouth.doubt.empty() ? Finding::found() : Finding::uncertain(mouth.doubt);
+  if (found.symmetry < kSureSymmetry) {
+    found.which_end = false;
+    found.finding = Finding::uncertain("the pipette's walls are not symmetric");
+  }
+  if (found.symmetry < kLeastSymmetry) found.finding = Finding::notFound("no pipette: its walls are not symmetric");
   if (!frame.contains(found.end, 2)) found.finding = Finding::notFound("no pipette: its end is out of the image");
   return found;
 }

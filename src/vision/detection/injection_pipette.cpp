@@ -36,8 +36,10 @@ constexpr double kFitAgrees = 2;                  // px, of a fit and an edge be
 constexpr double kSureEnd = 0.6;                  // px, of an end
 constexpr double kSureCompressed = 0.25;          // px, the same of an end in a compressed image
 constexpr double kFarEnd = 3, kSureFarEnd = 0.4;  // px, from where the edges end, and the deviation of an end that far
-constexpr double kUnclear = 2;                    // px, standard deviation of an end before nothing else
+constexpr double kUnclear = 0.0019;               // of the frame's width, deviation of an end before nothing else
 constexpr double kNothingElse = 40;               // clearness of an end before nothing else
+constexpr double kNoWitness = 3;                  // misfit of a fit that describes nothing
+constexpr double kThin = 7, kThinClear = 45;      // px, half width; clearness of such an end, if it does not go on
 constexpr double kWallsKept = 0.15;               // of the walls' edges, that are left near an end
 constexpr double kShaded = 0.2;                   // of walls that are not alike, as in DIC
 constexpr double kThinShaded = 7;                 // px, half width of a profile that such walls displace
@@ -69,8 +71,8 @@ PipetteEnd tipIn(const PipetteStrip& strip, int row, double reach, double half_w
   return end;
 }
 
-/// Replaces the end by that of a fit to its grey values, where the background is plain enough for it.
-void fitEnd(const Frame& frame, const PipetteAxis& axis, const TipOutline& outline, PipetteDetection& found,
+/// Replaces the end by that of a fit to its grey values, where the background is plain enough for it: true.
+bool fitEnd(const Frame& frame, const PipetteAxis& axis, const TipOutline& outline, PipetteDetection& found,
             double across) {
   PipetteStrip::Shape shape;
   shape.direction = axis.direction;
@@ -83,23 +85,26 @@ void fitEnd(const Frame& frame, const PipetteAxis& axis, const TipOutline& outli
   if (!strip.inside(static_cast<int>(kFitBehind) - kFitBefore) ||
       !strip.inside(static_cast<int>(kFitBehind) + kFitShaft)) {
     found.finding = Finding::uncertain("the tip is at the border of the frame");
-    return;
+    return false;
   }
   const TipFit fit = fitTip(strip, outline, kFitBehind, frame.noise());
+  // Who describes nothing is no witness of where an end before nothing else is.
+  if (fit.misfit > kNoWitness && found.clearness > kNothingElse) return false;
   if (!fit.valid || (fit.misfit > kPlain && (fit.ambiguous || std::abs(fit.row - kFitBehind) > kFitAgrees))) {
     found.finding = Finding::uncertain("the tip fades into its background");
-    return;
+    return false;
   }
-  if (fit.misfit > kPlain) return;
+  if (fit.misfit > kPlain) return false;
   found.end = strip.point(fit.row, 0);
   found.setCovariance(fit.deviation, across);
-  if (found.clearness < kSureClearness) return;
+  if (found.clearness < kSureClearness) return true;
   if (fit.ambiguous) {
     found.finding = Finding::uncertain("in focus and out of focus the tip has other places");
-    return;
+    return true;
   }
   const double most = std::abs(fit.row - kFitBehind) > kFarEnd ? kSureFarEnd : kSureEnd;
   found.finding = fit.deviation > most ? Finding::uncertain("the tip fades into its background") : Finding::found();
+  return true;
 }
 
 /// Takes the certainty from an end that the walls behind it contradict.
@@ -166,11 +171,13 @@ PipetteDetection refineInjection(const Frame& frame, PipetteAxis axis, const cv:
   found.clearness = last.clearness;
   found.setCovariance(last.deviation, fit.offset_deviation);
   found.finding = Finding::found();
-  const double unclear = found.clearness < kNothingElse ? kSureEnd : kUnclear;
+  const double unclear = found.clearness < kNothingElse ? kSureEnd : kUnclear * frame.width();
   if (last.deviation > unclear) found.finding = Finding::uncertain("the pipette's end is not clear");
   if (found.clearness < kSureClearness)
     found.finding = Finding::uncertain("the tip is not clear before its background");
-  fitEnd(frame, axis, outline, found, fit.offset_deviation);
+  const bool described = fitEnd(frame, axis, outline, found, fit.offset_deviation);
+  if (!described && found.finding.isFound() && found.half_width < kThin && found.clearness < kThinClear)
+    found.finding = Finding::uncertain("the pipette is thin, and may go on before the end that is seen");
   if (found.finding.isFound() && isCompressed(frame.noise()) && found.deviationAlong() > kSureCompressed)
     found.finding = Finding::uncertain("the image has no noise, as a compressed one, and the tip is not clear");
   if (found.half_width > kWidestSure) found.finding = Finding::uncertain("the pipette is too wide at its end");

@@ -13,10 +13,13 @@ constexpr int kAxes = 5, kHoldingAxes = 8;
 constexpr double kWider = 1.38;                    // ratio of two outlines' widths that tells them apart
 constexpr double kTipReach = 10, kMouthReach = 8;  // px beside the reach of tracking
 constexpr int kRoundsAtProposal = 3;
-constexpr double kProposedTolerance = 0.15;          // rad, of a direction that a second eye sees
+constexpr double kProposedTolerance = 0.3;           // rad, of a direction that a second eye sees
 constexpr double kProposedMargin = 2;                // of the half width, of the region that is searched
 constexpr int kFinest = 1, kFinestBesideBorder = 2;  // see AxisSearch::finer
 constexpr double kBesideBorder = 120;                // px
+// Of the half width, of a mouth: a second eye sees it along the axis better than beside it.
+constexpr double kMouthAlong = 0.27, kSameMouthAlong = 0.12, kSameMouthBeside = 0.5;
+constexpr double kSameClearness = 0.9;  // of the clearness, of an end that is told by a second eye
 
 }  // namespace
 
@@ -75,16 +78,19 @@ PipetteDetection PipetteDetector::detect(const Frame& frame, const ProposedPipet
   if (!isAllowed(proposed)) return found;
   const double direction = proposed.direction(), tolerance = proposed.tolerance;
   found = search(frame, searchAt(frame, proposed), kFinest);
-  if (!found.finding.hasValues() || cv::norm(found.end - proposed.end) > tolerance) {
+  const bool elsewhere = !found.finding.hasValues() || cv::norm(found.end - proposed.end) > tolerance;
+  if (elsewhere || !found.finding.isFound()) {
     const PipetteDetection refined =
         refine(frame, {proposed.end, direction, proposed.half_width, 0, 0}, proposed.end, tolerance, kRoundsAtProposal);
-    if (refined.finding.hasValues()) found = refined;
+    const bool better = elsewhere ? refined.finding.hasValues() : refined.finding.isFound();
+    if (better) found = refined;
   }
   if (!found.finding.hasValues()) {
     found.finding = Finding::notFound("a network sees a pipette whose end cannot be measured");
     return found;
   }
   found.hear(isAtEnd(found, proposed) ? Finding::found() : Finding::uncertain(kSeenElsewhere));
+  if (found.second->isFound() && isSameMouth(found, proposed)) found.confirm();
   return found;
 }
 
@@ -94,8 +100,15 @@ bool PipetteDetector::isAllowed(const ProposedPipette& proposed) const {
          (config_.any_direction || angleBetween(proposed.direction(), config_.direction) <= config_.tolerance);
 }
 
-bool PipetteDetector::isAtEnd(const PipetteDetection& pipette, const ProposedPipette& proposed) {
-  return cv::norm(pipette.end - proposed.end) <= proposed.tolerance;
+bool PipetteDetector::isAtEnd(const PipetteDetection& pipette, const ProposedPipette& proposed) const {
+  if (cv::norm(pipette.end - proposed.end) > proposed.tolerance) return false;
+  return config_.kind == "injection" || std::abs(pipette.inAxes(proposed.end).x) <= kMouthAlong * pipette.half_width;
+}
+
+bool PipetteDetector::isSameMouth(const PipetteDetection& pipette, const ProposedPipette& proposed) const {
+  const cv::Point2d away = pipette.inAxes(proposed.end);
+  return config_.kind == "holding" && std::abs(away.x) <= kSameMouthAlong * pipette.half_width &&
+         std::abs(away.y) <= kSameMouthBeside * pipette.half_width;
 }
 
 AxisSearch PipetteDetector::searchAt(const Frame& frame, const ProposedPipette& proposed) const {
@@ -142,6 +155,10 @@ PipetteDetection PipetteDetector::track(const Frame& frame, const PipetteDetecti
   const bool injection = config_.kind == "injection";
   found = refine(frame, axis, previous.end, reach + (injection ? kTipReach : kMouthReach), injection ? 2 : 1);
   if (previous.second) found.hear(*previous.second);
+  if (previous.confirmed && found.clearness >= kSameClearness * *previous.confirmed) {
+    found.confirmed = previous.confirmed;
+    found.confirm();
+  }
   return found;
 }
 

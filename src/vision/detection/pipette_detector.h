@@ -38,13 +38,15 @@ class PipetteDetector {
   /// Whether the one that is searched may be there, by what is told of direction and region.
   bool isAllowed(const ProposedPipette& proposed) const;
   /// Whether the end that was measured is the one that a second eye sees.
-  static bool isAtEnd(const PipetteDetection& pipette, const ProposedPipette& proposed);
+  bool isAtEnd(const PipetteDetection& pipette, const ProposedPipette& proposed) const;
   static constexpr const char* kSeenElsewhere = "a network sees its end elsewhere";
 
   /// Searches near a pipette that was found in an earlier frame: its end moved by at most `reach` (px).
   PipetteDetection track(const Frame& frame, const PipetteDetection& previous, double reach) const;
 
  private:
+  /// Whether a mouth is so near to the proposed one that this tells which of several edges it is.
+  bool isSameMouth(const PipetteDetection& pipette, const ProposedPipette& proposed) const;
   cv::Rect region() const;  ///< that is told; empty: none
   AxisSearch searchAt(const Frame& frame, const ProposedPipette& proposed) const;
   PipetteDetection search(const Frame& frame, AxisSearch search, int finest) const;

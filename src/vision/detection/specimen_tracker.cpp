@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "vision/detection/frame_search.h"
+#include "vision/detection/view_scale.h"
 
 namespace microinjection {
 namespace {
@@ -14,14 +15,6 @@ constexpr double kNearCell = 1.6;  // over the cell's radius: of a tip this near
 const cv::Size kSamples(96, 72);
 constexpr double kSameScene = 0.5;  // correlation of two frames' samples, at least
 constexpr double kBlank = 3;        // deviations of a pixel's noise, of the samples of a frame that shows nothing
-
-PipetteDetectorConfig readPipette(ConfigReader& reader, const std::string& kind, double direction) {
-  PipetteDetectorConfig config = PipetteDetectorConfig::read(reader);
-  config.any_direction = !reader.has("direction");
-  if (config.any_direction) config.direction = direction;
-  config.kind = kind;
-  return config;
-}
 
 /// What a later search cannot better: a pipette that was found, a cell whose diameter was.
 bool isSure(const PipetteDetection& pipette) { return pipette.finding.isFound(); }
@@ -104,23 +97,21 @@ void measureIndentation(const Frame& frame, SpecimenView& view) {
   takeUndisturbed(view.indentation, view.cell);
 }
 
-SpecimenTrackerConfig SpecimenTrackerConfig::read(ConfigReader& reader) {
-  SpecimenTrackerConfig config;
-  reader.number("reach", config.reach, Range::closed(2, 500));
-  ConfigReader cell = reader.section("cell");
-  config.cell = CellDetectorConfig::read(cell);
-  ConfigReader injection = reader.section("injection_pipette"), holding = reader.section("holding_pipette");
-  config.injection = readPipette(injection, "injection", -M_PI / 2);
-  config.holding = readPipette(holding, "holding", M_PI / 2);
-  return config;
-}
-
 SpecimenTracker::SpecimenTracker(const SpecimenTrackerConfig& config, std::shared_ptr<SecondEye> eye)
     : config_(config),
+      eye_(std::move(eye)),
       cell_(config.cell),
       injection_(config.injection),
-      holding_(config.holding),
-      eye_(std::move(eye)) {}
+      holding_(config.holding) {}
+
+void SpecimenTracker::setScales(const Scales& scales) {
+  if (scales == scales_) return;
+  seen_ = scaled(seen_, scales.all / scales_.all);
+  scales_ = scales;
+  cell_ = CellDetector(scaled(config_.cell, scales.all));
+  holding_ = PipetteDetector(scaled(config_.holding, scales.all));
+  injection_ = PipetteDetector(scaled(config_.injection, scales.needle));
+}
 
 void SearchPace::searched(bool sure) {
   searches_ = sure ? 0 : searches_ + 1;
@@ -141,14 +132,28 @@ bool SpecimenTracker::isAnotherScene(const Frame& frame) {
 }
 
 const SpecimenView& SpecimenTracker::next(const Frame& frame) {
+  int level = 0;
+  while (std::ldexp(frame.width(), -level) > kWidest) ++level;
+  const int finer = frame.width() < kNarrow ? level - 1 : level;
+  setScales({std::ldexp(1, -level), std::ldexp(1, -finer)});
+  const Frame searched = frame.resized(level);
+  seen_ = finer == level ? lookAt(searched, searched) : lookAt(searched, frame.resized(finer));
+  view_ = scaled(seen_, 1 / scales_.all);
+  return view_;
+}
+
+SpecimenView SpecimenTracker::lookAt(const Frame& frame, const Frame& enlarged) {
   if (isAnotherScene(frame)) cell_pace_ = injection_pace_ = holding_pace_ = SearchPace();
-  FrameSearch search(frame, eye_.get());
+  FrameSearch search(frame, eye_.get()), closer(enlarged, eye_.get());
+  FrameSearch& of_needle = &frame == &enlarged ? search : closer;
+  const double reach = scales_.all * config_.reach, finer = scales_.needle / scales_.all;
   SpecimenView view;
-  view.cell = follow(cell_, frame, view_.cell, config_.reach, cell_pace_,
+  view.cell = follow(cell_, frame, seen_.cell, reach, cell_pace_,
                      [&](const CellDetector& detector) { return search.cell(detector); });
-  view.injection = follow(injection_, frame, view_.injection, config_.reach, injection_pace_,
-                          [&](const PipetteDetector& detector) { return search.pipette(detector); });
-  view.holding = follow(holding_, frame, view_.holding, config_.reach, holding_pace_,
+  view.injection = scaled(follow(injection_, enlarged, scaled(seen_.injection, finer), finer * reach, injection_pace_,
+                                 [&](const PipetteDetector& detector) { return of_needle.pipette(detector); }),
+                          1 / finer);
+  view.holding = follow(holding_, frame, seen_.holding, reach, holding_pace_,
                         [&](const PipetteDetector& detector) { return search.pipette(detector); });
   if (view.holding.finding.isFound())
     view.cell.dismissOthers([&](const Ellipse& thing) { return belongsTo(view.holding, thing); });
@@ -157,8 +162,7 @@ const SpecimenView& SpecimenTracker::next(const Frame& frame) {
     view.cell.doubtOneOfTwo();
   }
   measureIndentation(frame, view);
-  view_ = view;
-  return view_;
+  return view;
 }
 
 }  // namespace microinjection

@@ -3,31 +3,9 @@
 #include <algorithm>
 #include <memory>
 
-#include "base/config_reader.h"
-#include "vision/detection/cell_detector.h"
-#include "vision/detection/indentation_contour.h"
-#include "vision/detection/overlay.h"
-#include "vision/detection/pipette_detector.h"
+#include "vision/detection/specimen_view.h"
 
 namespace microinjection {
-
-struct SpecimenTrackerConfig {
-  double reach = 40;  ///< px, largest motion from one frame to the next
-  CellDetectorConfig cell;
-  PipetteDetectorConfig injection, holding;
-
-  /// Reads reach and the sections cell, injection_pipette and holding_pipette.
-  static SpecimenTrackerConfig read(ConfigReader& reader);
-};
-
-/// What one frame shows.
-struct SpecimenView {
-  CellDetection cell;
-  PipetteDetection injection, holding;
-  Dimple indentation;
-
-  OverlayContent overlay() const { return {&cell, &holding, &injection, &indentation}; }
-};
 
 /// Measures the indentation of a view's cell under its injection pipette, and what the cell is with it. A
 /// needle bends the border, and an ellipse through all of it leans into the dimple. The cell gets the centre
@@ -60,21 +38,34 @@ class SpecimenTracker {
   /// @param eye  none: the whole frame is searched
   explicit SpecimenTracker(const SpecimenTrackerConfig& config, std::shared_ptr<SecondEye> eye = nullptr);
 
-  /// A refused frame finds nothing, and the next one is searched as a whole.
+  /// A refused frame finds nothing, and the next one is searched as a whole. A frame wider than kWidest is
+  /// searched at half, or a quarter, of its resolution: lines that are many pixels wide are no sharper for them. In one
+  /// narrower than kNarrow the needle is searched at twice its resolution.
   const SpecimenView& next(const Frame& frame);
   const SpecimenView& view() const { return view_; }  ///< of the last frame
 
   /// Frames between two searches for something better than what is followed, and for what is missing, at most.
   static constexpr int kSearchEvery = 30, kSearchMissingEvery = 8;
+  static constexpr int kWidest = 1800, kNarrow = 800;  ///< px
 
  private:
+  /// How many px a px of the frame that came is wide in the frame that is searched, and in that of the needle.
+  struct Scales {
+    double all = 1, needle = 1;
+    bool operator==(const Scales& other) const { return all == other.all && needle == other.needle; }
+  };
+
+  void setScales(const Scales& scales);
   bool isAnotherScene(const Frame& frame);
+  /// @param enlarged  the frame at the needle's scale
+  SpecimenView lookAt(const Frame& frame, const Frame& enlarged);
 
   SpecimenTrackerConfig config_;
+  std::shared_ptr<SecondEye> eye_;
+  Scales scales_;
   CellDetector cell_;
   PipetteDetector injection_, holding_;
-  std::shared_ptr<SecondEye> eye_;
-  SpecimenView view_;
+  SpecimenView seen_, view_;  ///< in px of the frame that is searched, and of that which came
   SearchPace cell_pace_, injection_pace_, holding_pace_;
   cv::Mat samples_;  ///< of the last frame's grey values
 };

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <opencv2/imgproc.hpp>
+
 #include "vision/detection/specimen_tracker.h"
 #include "vision/microscope/microscope.h"
 
@@ -243,6 +245,51 @@ TEST_F(SecondEyeTest, ACellThatIsReleasedIsOneOfTwo) {
   const SpecimenView& view = tracker.next(frame());
   EXPECT_FALSE(view.holding.finding.isFound());
   EXPECT_EQ(view.cell.size.reason, CellDetection::kTwoCells);
+}
+
+/// A network sees where a mouth is along the axis better than beside it.
+TEST_F(SecondEyeTest, AMouthThatItSeesElsewhereAlongTheAxisIsNotSure) {
+  eye_->proposal.holding->tolerance = 80;
+  EXPECT_TRUE(seen(anyDirection()).holding.finding.isFound());
+  eye_->proposal.holding->end = pixel(0, -37e-6) + cv::Point2d(0, 50);  // of a half width of 133
+  EXPECT_EQ(seen(anyDirection()).holding.finding.reason, "a network sees its end elsewhere");
+}
+
+/// Lips that are not clear: which edge is the mouth, the network knows, in the frames that follow too.
+TEST_F(SecondEyeTest, AMouthWithUnclearLipsIsSureWhereItSeesOne) {
+  const auto faint = [&] {
+    cv::Mat image = microscope_.render(scene_, 0, ++seed_);
+    const cv::Rect lip(cv::Point(pixel(-40e-6, -37e-6)) - cv::Point(20, 20), cv::Size(40, 40));
+    cv::GaussianBlur(image(lip), image(lip), {}, 5);
+    return Frame(image);
+  };
+  eye_->proposal.holding->tolerance = 80;
+  SpecimenTracker tracker(anyDirection(), eye_);
+  for (int i = 0; i < 3; ++i) {
+    const PipetteDetection& mouth = tracker.next(faint()).holding;
+    ASSERT_TRUE(mouth.which_end) << i;
+    EXPECT_TRUE(mouth.finding.isFound()) << i << mouth.finding.reason;
+    EXPECT_LT(cv::norm(mouth.end - pixel(0, -37e-6)), 2 * mouth.deviationAlong()) << i;
+  }
+  EXPECT_EQ(eye_->looks, 1);
+  eye_->proposal.holding->end = pixel(0, -37e-6) + cv::Point2d(0, 25);
+  EXPECT_EQ(SpecimenTracker(anyDirection(), eye_).next(faint()).holding.finding.reason,
+            "the lips of the mouth are not clear");
+}
+
+/// A vesicle has a halo that both eyes may take for a zona.
+TEST_F(SecondEyeTest, ACellWhoseBorderItSeesAsThatOfAZonaIsNotSure) {
+  cv::Mat image(600, 900, CV_8U, cv::Scalar(128)), noise(image.size(), CV_8U);
+  cv::circle(image, {450, 300}, 120, cv::Scalar(90), cv::FILLED);
+  cv::GaussianBlur(image, image, {}, 1.5);
+  cv::randn(noise, 10, 2);
+  image += noise;
+  eye_->proposal = {};
+  eye_->proposal.cells.push_back({{{450, 300}, {114, 114}, 0}, Ellipse{{450, 300}, {130, 130}, 0}, false, false});
+  const auto seen = [&] { return SpecimenTracker(anyDirection(), eye_).next(Frame(image)).cell; };
+  ASSERT_TRUE(seen().size.isFound()) << seen().size.reason;
+  eye_->proposal.cells.front().zona->semi_axes = {121, 121};
+  EXPECT_EQ(seen().size.reason, "a network sees a zona's border where the cell's is measured");
 }
 
 TEST_F(SecondEyeTest, LooksWhereSomethingIsSearchedOnly) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <opencv2/imgproc.hpp>
+
 #include "vision/detection/zona_thickness.h"
 #include "vision/microscope/microscope.h"
 
@@ -67,6 +69,30 @@ TEST_F(SpecimenTrackerTest, FollowsASession) {
     EXPECT_LT(cv::norm(view.injection.end - pixel(0, height)), 0.5);
     ASSERT_TRUE(view.holding.finding.isFound()) << view.holding.finding.reason;
     EXPECT_LT(cv::norm(view.holding.end - pixel(0, -37e-6)), 1);
+  }
+}
+
+/// The same frame with twice and with half as many pixels a side shows the same, and is followed as well.
+TEST_F(SpecimenTrackerTest, SeesTheSameInOtherSizes) {
+  const MicroscopeScene scene = heldOocyte(60e-6);
+  const cv::Mat image = microscope_.render(scene, 0, 1), moved = microscope_.render(scene, 0, 2);
+  for (const double factor : {2.0, 0.5}) {
+    SpecimenTracker tracker(tracking());
+    for (const cv::Mat& each : {image, moved}) {
+      cv::Mat sized;
+      cv::resize(each, sized, {}, factor, factor, factor > 1 ? cv::INTER_CUBIC : cv::INTER_AREA);
+      const SpecimenView& view = tracker.next(Frame(sized));
+      const auto error = [&](const cv::Point2d& place, const cv::Point2d& truth) {
+        return cv::norm(place - (factor * (truth + cv::Point2d(0.5, 0.5)) - cv::Point2d(0.5, 0.5)));
+      };
+      ASSERT_TRUE(view.cell.finding.hasValues()) << factor;
+      EXPECT_LT(error(view.cell.centre, pixel(0, 0)), 0.6) << factor;
+      EXPECT_NEAR(view.cell.outer().ellipse.meanDiameter(), 2 * factor * kTrackedRadius / kTrackedPixel, 2) << factor;
+      ASSERT_TRUE(view.injection.finding.isFound()) << factor << view.injection.finding.reason;
+      EXPECT_LT(error(view.injection.end, pixel(0, 60e-6)), 1) << factor;
+      ASSERT_TRUE(view.holding.finding.hasValues()) << factor;
+      EXPECT_LT(error(view.holding.end, pixel(0, -37e-6)), 2) << factor;
+    }
   }
 }
 
