@@ -20,7 +20,7 @@ constexpr double kAxisStripStep = 2;        // px, of the strip that gives the a
 constexpr double kNearMouth = 8, kMouthRows = 36, kMouthBlur = 1.3;  // px, of the strip that shows the mouth
 constexpr double kWitnessReach = 14;                                 // px beside lips that are not clear
 constexpr int kMouthMargin = 18;                                     // px beside the walls
-constexpr double kLeastSymmetry = 0.6, kSureSymmetry = 0.9;          // of the walls behind a mouth
+constexpr double kLeastSymmetry = 0.7, kSureSymmetry = 0.9;          // of the walls behind a mouth
 
 /// Row of a mouth whose lips are not clearly round: where an edge across ends both walls, if there is one.
 double secondWitness(const PipetteStrip& strip, const HoldingMouth& mouth) {

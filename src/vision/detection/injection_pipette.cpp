@@ -20,11 +20,11 @@ constexpr double kTube = 0.1;                              // widening of a tube
 constexpr double kEndsAgree = 6;                           // px, between two ways to see a tip's end
 constexpr double kDeviationPerGap = 0.25;  // standard deviation of an end over the distance between two ways to see it
 constexpr double kThinnestTip = 4, kWidestTip = 40, kWidestSure = 26;  // px, half widths
-constexpr double kAhead = 48;           // px behind the end, whose half width is that of the strips
-constexpr int kFirstShift = 24;         // px, that the first axis may be off
-constexpr double kOutlineMargin = 6;    // px beside an outline
-constexpr double kSureClearness = 9;    // of a tip
-constexpr double kSureSymmetry = 0.93;  // of the edges near a tip
+constexpr double kAhead = 48;         // px behind the end, whose half width is that of the strips
+constexpr int kFirstShift = 24;       // px, that the first axis may be off
+constexpr double kOutlineMargin = 6;  // px beside an outline
+constexpr double kSureClearness = 9;  // of a tip
+constexpr double kLeastSymmetry = 0.83, kSureSymmetry = 0.93;  // of the edges near a tip
 constexpr int kRefinements = 3;
 constexpr double kFitBehind = 48;  // px before an end, in the strip of its fit
 constexpr int kFitBefore = 18;     // px of the background that the fit needs
@@ -183,6 +183,7 @@ PipetteDetection refineInjection(const Frame& frame, PipetteAxis axis, const cv:
   if (found.half_width > kWidestSure) found.finding = Finding::uncertain("the pipette is too wide at its end");
   if (found.symmetry < kSureSymmetry) found.finding = Finding::uncertain("the pipette's walls are not symmetric");
   doubtByWalls(frame, found);
+  if (found.symmetry < kLeastSymmetry) found.finding = Finding::notFound("no pipette: its walls are not symmetric");
   if (!frame.contains(found.end, 2)) found.finding = Finding::notFound("no pipette: its end is out of the image");
   return found;
 }

@@ -19,6 +19,7 @@ constexpr int kFinest = 1, kFinestBesideBorder = 2;  // see AxisSearch::finer
 constexpr double kBesideBorder = 120;                // px
 // Of the half width, of a mouth: a second eye sees it along the axis better than beside it.
 constexpr double kMouthAlong = 0.27, kSameMouthAlong = 0.12, kSameMouthBeside = 0.5;
+constexpr double kFaded = 3;            // tolerances along the shaft, in which a second eye overlooks a thin tip
 constexpr double kSameClearness = 0.9;  // of the clearness, of an end that is told by a second eye
 
 }  // namespace
@@ -101,8 +102,11 @@ bool PipetteDetector::isAllowed(const ProposedPipette& proposed) const {
 }
 
 bool PipetteDetector::isAtEnd(const PipetteDetection& pipette, const ProposedPipette& proposed) const {
-  if (cv::norm(pipette.end - proposed.end) > proposed.tolerance) return false;
-  return config_.kind == "injection" || std::abs(pipette.inAxes(proposed.end).x) <= kMouthAlong * pipette.half_width;
+  const cv::Point2d seen = pipette.inAxes(proposed.end);
+  if (config_.kind == "holding")
+    return std::abs(seen.x) <= kMouthAlong * pipette.half_width && std::abs(seen.y) <= pipette.half_width;
+  return seen.x >= -proposed.tolerance && seen.x <= kFaded * proposed.tolerance &&
+         std::abs(seen.y) <= proposed.tolerance;
 }
 
 bool PipetteDetector::isSameMouth(const PipetteDetection& pipette, const ProposedPipette& proposed) const {

@@ -119,7 +119,7 @@ TEST_F(SecondEyeTest, AThinZonaMayBeOverlooked) {
 /// Each frame that follows has the doubt of the one that was searched.
 TEST_F(SecondEyeTest, ADoubtIsTracked) {
   eye_->proposal.cells.front().zona->semi_axes *= 1.15;
-  eye_->proposal.injection->end += cv::Point2d(24, -28);  // along its axis
+  eye_->proposal.injection->end += cv::Point2d(-24, 28);  // before the tip
   SpecimenTracker tracker(anyDirection(), eye_);
   for (int i = 0; i < SearchPace::kFirst + 4; ++i) {
     const SpecimenView& view = tracker.next(frame());
