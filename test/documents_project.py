@@ -120,7 +120,8 @@ class Project:
             elif place.parent.as_posix() == 'benchmark' and not place.name.startswith('plot_') and place.suffix in ('.cpp', '.py'):
                 self.benches[place.stem] = options
             elif place.suffix == '.py' and place.parent.as_posix() in ('src/tools', 'benchmark/paper'):
-                self.programs[place.name] = options
+                renamed = f'RENAME {place.stem})' in self.text('src/nodes/CMakeLists.txt')
+                self.programs[place.stem if renamed else place.name] = options
         self.options = set().union(*self.programs.values(), *self.benches.values(), *self.dev.values())
 
     def read_nodes(self):

@@ -171,6 +171,7 @@ const std::vector<std::string>& overridableNodes() {
                                                  "microscope",
                                                  "notebook",
                                                  "operator",
+                                                 "readiness",
                                                  "session_recorder",
                                                  "teleoperation_follower",
                                                  "touch",

@@ -27,7 +27,7 @@ GOOD = {  # what each node cannot do without
     "image_recorder": {"output_dir": f"{FOLDER.name}/images"}, "injection_controller": {}, "injector": {}, "keyboard_hand": {},
     "link_emulator": {}, "micromanipulator": {}, "microscope": {}, "notebook": {"file": f"{FOLDER.name}/notebook.csv"},
     "operator": {"motion": PACKAGE / "config/hand_motions/indent_and_retract.yaml"},
-    "session_recorder": {"output_dir": f"{FOLDER.name}/record"}, "teleoperation_follower": {}, "touch": {}, "vision": {},
+    "readiness": {}, "session_recorder": {"output_dir": f"{FOLDER.name}/record"}, "teleoperation_follower": {}, "touch": {}, "vision": {},
     "visual_servo": {}}
 SILENT = {"force_watchdog"}  # has no diagnostics
 AT_A_TIME = 2

@@ -13,6 +13,7 @@ import rostest
 import yaml
 
 PATIENCE = 300  # s of wall time; only a session that hangs takes that long
+NO_SESSION = 3  # exit status of why
 # Of the hand: phase, s, m, clutch.
 PATH = [("approach", 1.0, -19.2e-3, False), ("approach", 0.2, -19.2e-3, True), ("approach", 0.8, 0.0, True),
         ("approach", 0.2, 0.0, False), ("approach", 1.0, -10.8e-3, False), ("touch", 0.8, -13.8e-3, False),
@@ -44,9 +45,20 @@ class SessionLiveTest(unittest.TestCase):
             "version": 1, "cell": "mouse_oocyte_injection", "hand": {"device": "operator", "motion": "motion.yaml"},
             "display": {"markers": False}, "overrides": PATIENT,
             "record": {"folder": str(cls.out), "end_when_done": True, "trainee": "ada", "history": "history.csv"}}))
-        result = subprocess.run(["roslaunch", "cell_microinjection", "session.launch", f"session:={session}"],
-                                timeout=PATIENCE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-        cls.status, cls.said = result.returncode, result.stdout
+        launched = subprocess.Popen(["roslaunch", "cell_microinjection", "session.launch", f"session:={session}"],
+                                    stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        cls.addClassCleanup(launched.kill)
+        cls.before = cls.why()
+        cls.during = cls.before
+        while cls.during.returncode == NO_SESSION and launched.poll() is None:
+            cls.during = cls.why()
+        cls.said, _ = launched.communicate(timeout=PATIENCE)
+        cls.status = launched.returncode
+
+    @staticmethod
+    def why():
+        return subprocess.run(["rosrun", "cell_microinjection", "why"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              text=True, timeout=PATIENCE)
 
     def setUp(self):
         self.assertEqual(self.status, 0, self.said)
@@ -94,6 +106,13 @@ class SessionLiveTest(unittest.TestCase):
         heights = [float(row["tip_z_m"]) for row in rows if row["tip_z_m"]]
         self.assertLess(min(heights), 15e-6)
         self.assertGreater(heights[-1], 28e-6)
+
+    def test_a_user_is_told_whether_it_is_ready(self):
+        self.assertIn(self.during.returncode, (0, 1), self.during.stdout)
+        self.assertEqual(self.during.stdout.startswith("the session is ready"), self.during.returncode == 0, self.during.stdout)
+        self.assertTrue(self.during.stdout.startswith("the session is"), self.during.stdout)
+        if self.before.returncode == NO_SESSION:  # else the session was quicker
+            self.assertIn("no session runs", self.before.stdout)
 
     def test_the_trainee_is_scored(self):
         told = self.told("training.yaml")

@@ -32,9 +32,9 @@ class SessionPlanTest : public SessionFolder {
 
 TEST_F(SessionPlanTest, TheDefaultSession) {
   const SessionPlan session = plan();
-  EXPECT_EQ(session.names(),
-            (Names{"micromanipulator", "force_sensor", "cell_simulator", "injector", "injection_controller",
-                   "haptic_bridge", "operator", "display", "force_sensor_frame", "robot_state_publisher"}));
+  EXPECT_EQ(session.names(), (Names{"micromanipulator", "force_sensor", "cell_simulator", "injector",
+                                    "injection_controller", "haptic_bridge", "operator", "display", "readiness",
+                                    "force_sensor_frame", "robot_state_publisher"}));
   EXPECT_EQ(at(session, "cell_simulator", "scene"), kPackage + "/config/cells/mouse_oocyte_injection.yaml");
   EXPECT_EQ(at(session, "cell_simulator", "needle"), "true");
   EXPECT_EQ(at(session, "cell_simulator", "rate"), "1000");

@@ -22,6 +22,7 @@
 #include "nodes/needle/rig_frames_node.h"
 #include "nodes/notebook_node.h"
 #include "nodes/operator_node.h"
+#include "nodes/readiness_node.h"
 #include "nodes/session_recorder_node.h"
 #include "nodes/teleoperation_follower_node.h"
 #include "nodes/touch_node.h"
@@ -50,6 +51,7 @@ NodeFactory nodeFactory(const std::string& program) {
       {"microscope", makeNode<MicroscopeNode>()},
       {"notebook", makeNode<NotebookNode>()},
       {"operator", makeNode<OperatorNode>()},
+      {"readiness", makeNode<ReadinessNode>()},
       {"rig_frames", makeNode<RigFramesNode>()},
       {"session_recorder", makeNode<SessionRecorderNode>()},
       {"teleoperation_follower", makeNode<TeleoperationFollowerNode>()},

@@ -42,6 +42,7 @@ const std::map<std::string, std::string> kGood = {
     {"microscope", "{}"},
     {"notebook", "{file: FOLDER/notebook.csv}"},
     {"operator", "{motion: " + kMotion + "}"},
+    {"readiness", "{}"},
     {"session_recorder", "{output_dir: FOLDER}"},
     {"teleoperation_follower", "{}"},
     {"touch", "{}"},

@@ -1,0 +1,63 @@
+#!/usr/bin/python3
+"""Why a session does not do what it is asked to, and what to do: /session/readiness as a text.
+
+The first reason is the one to mend first; others may follow from it. Where the remedy is a long one, the section of
+doc/guide/troubleshooting.md is named.
+
+Exit status: 0 the session is ready; 1 it is not; 2 bad usage; 3 there is no session, or its node readiness is silent.
+"""
+
+import argparse
+import sys
+import textwrap
+
+import rospy
+
+from cell_microinjection.msg import Hindrance, Readiness
+
+PATIENCE = 3  # s, for a session's answer; it tells twice a second
+WIDTH = 100
+LEVELS = {Hindrance.OK: "", Hindrance.WARN: "warning: ", Hindrance.ERROR: "error: "}
+
+
+def text_of(readiness):
+    """The message as lines for a person."""
+    lines = ["the session is ready" if readiness.ready else "the session is not ready"]
+    for number, each in enumerate(readiness.hindrances, 1):
+        held = ", holds the needle" if each.holds else ""
+        lines.append(f"{number}. {each.node} ({each.status}{held}): {LEVELS.get(each.level, '')}{each.reason}")
+        see = f'see "{each.section}" in doc/guide/troubleshooting.md' if each.section else ""
+        remedy = f"{each.remedy} ({see})" if each.remedy and see else each.remedy or see
+        if remedy:
+            lines += textwrap.wrap(remedy, WIDTH, initial_indent="     ", subsequent_indent="     ")
+    return "\n".join(lines)
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="why", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--watch", action="store_true", help="goes on, and prints what is new, until Ctrl-C")
+    arguments = parser.parse_args(rospy.myargv()[1:])
+    try:
+        rospy.get_master().getPid()
+    except OSError:
+        print("why: there is no ROS master: no session runs, or ROS_MASTER_URI names another one", file=sys.stderr)
+        return 3
+    rospy.init_node("why", anonymous=True, disable_signals=True)
+    said = None
+    while True:
+        try:
+            readiness = rospy.wait_for_message("/session/readiness", Readiness, PATIENCE)
+        except rospy.ROSException:
+            print("why: nothing on /session/readiness: no session runs, or its node readiness has ended", file=sys.stderr)
+            return 3
+        except KeyboardInterrupt:
+            return 0
+        if text_of(readiness) != said:
+            said = text_of(readiness)
+            print(said, flush=True)
+        if not arguments.watch:
+            return 0 if readiness.ready else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
