@@ -12,6 +12,7 @@
 #include "benchmark/common/paper_mesh.h"
 #include "benchmark/peers/peer_case.h"
 #include "cell/contact/rounded_tip.h"
+#include "cell/material/material_parameter.h"
 #include "cell/mesh/surface_mesh.h"
 #include "cell/model/scene_mesh.h"
 
@@ -92,6 +93,10 @@ PeerCase makeCase(const std::string& scene_file, const std::string& mesh, double
   for (const Scene::Layer& layer : scene.cell.layers) {
     if (layer.surface_tension != 0 || !layer.material.viscoelasticity.empty()) {
       throw std::runtime_error("surface tension and viscoelasticity are not part of the format");
+    }
+    for (const MaterialParameter& each : materialParameters()) {
+      if (!each.ofAllModels() && layer.material.*each.value != MaterialConfig().*each.value)
+        throw std::runtime_error(std::string(each.name) + " is not part of the format");
     }
     result.layers.push_back({layer.material.model, layer.material.young_modulus, layer.material.poisson_ratio});
   }

@@ -6,6 +6,7 @@
 
 #include "base/config_reader.h"
 #include "cell/family/family_places.h"
+#include "cell/material/material_parameter.h"
 #include "cell/model/plausible_scene.h"
 #include "cell/model/scene_description.h"
 #include "cell/model/similarity.h"
@@ -139,7 +140,9 @@ std::string Family::differenceFrom(const Scene& scene) const {
     const Scene::Layer &layer = scene.cell.layers[i], &wanted = own.cell.layers[i];
     const std::string of = own.cell.layers.size() > 1 ? " of layer " + std::to_string(i) : "";
     compare("material" + of, layer.material.model, wanted.material.model);
-    compare("poisson_ratio" + of, layer.material.poisson_ratio, wanted.material.poisson_ratio);
+    for (const MaterialParameter& each : materialParameters()) {
+      if (each.stresses == 0) compare(each.name + of, layer.material.*each.value, wanted.material.*each.value);
+    }
     compare("surface_tension" + of, layer.surface_tension, wanted.surface_tension);
   }
   compare("tip", scene.needle.tip.shape, own.needle.tip.shape);

@@ -4,6 +4,7 @@
 #include "cell/material/lame.h"
 #include "cell/material/material.h"
 #include "cell/material/material_models.h"
+#include "cell/material/material_parameter.h"
 
 namespace microinjection {
 namespace {
@@ -37,12 +38,19 @@ const std::vector<std::string>& materialModels() {
   return models;
 }
 
+const std::vector<MaterialParameter>& materialParameters() {
+  static const std::vector<MaterialParameter> parameters = {
+      {"young_modulus", &MaterialConfig::young_modulus, Range::positive(), "Pa", "", 1},
+      {"poisson_ratio", &MaterialConfig::poisson_ratio, Range::open(-1, 0.5), "", ""},
+      {"mooney_ratio", &MaterialConfig::mooney_ratio, Range::closed(0, 1), "", "mooney_rivlin"}};
+  return parameters;
+}
+
 void MaterialConfig::validate() const {
   ConfigErrors errors("material");
   errors.requireOneOf(materialModels(), "model", model);
-  errors.require(Range::positive(), "young_modulus", young_modulus, " Pa");
-  errors.require(Range::open(-1, 0.5), "poisson_ratio", poisson_ratio);
-  errors.require(Range::closed(0, 1), "mooney_ratio", mooney_ratio);
+  for (const MaterialParameter& each : materialParameters())
+    errors.require(each.allowed, each.name, this->*each.value, *each.unit == 0 ? "" : std::string(" ") + each.unit);
   viscoelasticity.check("viscoelasticity/", errors);
   errors.throwAny();
 }

@@ -8,6 +8,7 @@
 #include "base/config_reader.h"
 #include "base/errors.h"
 #include "base/parse_number.h"
+#include "cell/material/material_parameter.h"
 #include "cell/model/plausible_scene.h"
 #include "cell/model/read_quantity.h"
 #include "cell/model/scene_check.h"
@@ -31,11 +32,11 @@ void readViscoelasticity(ConfigReader reader, ViscoelasticityConfig& value) {
 void readMaterial(ConfigReader reader, MaterialConfig& value) {
   value.model.clear();  // empty unless it is read
   reader.choice("model", value.model, materialModels(), ConfigReader::kRequired);
-  readQuantity(reader, "young_modulus", value.young_modulus, Range::positive(), "Pa", ConfigReader::kRequired);
-  readQuantity(reader, "poisson_ratio", value.poisson_ratio, Range::open(-1, 0.5), "", ConfigReader::kRequired);
-  readQuantity(reader, "mooney_ratio", value.mooney_ratio, Range::closed(0, 1), "");
-  if (reader.has("mooney_ratio") && !value.model.empty() && value.model != "mooney_rivlin") {
-    reader.error("mooney_ratio", "must be left out: it belongs to model mooney_rivlin only");
+  for (const MaterialParameter& each : materialParameters()) {
+    const auto presence = each.ofAllModels() ? ConfigReader::kRequired : ConfigReader::kOptional;
+    readQuantity(reader, each.name, value.*each.value, each.allowed, each.unit, presence);
+    if (!each.ofAllModels() && reader.has(each.name) && !value.model.empty() && value.model != each.model)
+      reader.error(each.name, std::string("must be left out: it belongs to model ") + each.model + " only");
   }
   readViscoelasticity(reader.section("viscoelasticity"), value.viscoelasticity);
 }

@@ -2,6 +2,8 @@
 
 #include <sstream>
 
+#include "cell/material/material_parameter.h"
+
 namespace microinjection {
 
 std::string describeCellAndTip(const Scene& scene) {
@@ -9,8 +11,8 @@ std::string describeCellAndTip(const Scene& scene) {
   out << std::hexfloat;
   for (const Scene::Layer& layer : scene.cell.layers) {
     const MaterialConfig& material = layer.material;
-    out << "layer " << layer.outer_radius << " tension " << layer.surface_tension << ' ' << material.model << ' '
-        << material.young_modulus << ' ' << material.poisson_ratio << ' ' << material.mooney_ratio;
+    out << "layer " << layer.outer_radius << " tension " << layer.surface_tension << ' ' << material.model;
+    for (const MaterialParameter& each : materialParameters()) out << ' ' << material.*each.value;
     for (const PronyTerm& term : material.viscoelasticity.prony) {
       out << " prony " << term.modulus_ratio << ' ' << term.relaxation_time;
     }

@@ -1,7 +1,10 @@
 #include "cell/model/similarity.h"
 
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
+
+#include "cell/material/material_parameter.h"
 
 namespace microinjection {
 
@@ -19,8 +22,8 @@ Scene withoutDimension(const Scene& scene) {
   const auto divide = [](double& value, double unit) { value = rounded(value / unit); };
   for (Scene::Layer& layer : result.cell.layers) {
     divide(layer.outer_radius, units.length);
-    divide(layer.material.young_modulus, units.modulus);
-    divide(layer.material.poisson_ratio, 1);
+    for (const MaterialParameter& each : materialParameters())
+      divide(layer.material.*each.value, std::pow(units.modulus, each.stresses));
     divide(layer.surface_tension, units.modulus * units.length);
   }
   divide(result.holding_pipette.contact_radius, units.length);

@@ -20,7 +20,8 @@ constexpr double kAxisStripStep = 2;        // px, of the strip that gives the a
 constexpr double kNearMouth = 8, kMouthRows = 36, kMouthBlur = 1.3;  // px, of the strip that shows the mouth
 constexpr double kWitnessReach = 14;                                 // px beside lips that are not clear
 constexpr int kMouthMargin = 18;                                     // px beside the walls
-constexpr double kLeastSymmetry = 0.7, kSureSymmetry = 0.9;          // of the walls behind a mouth
+constexpr double kMouthModel = 0.03;  // px, standard deviation along the axis beside that of the arcs
+constexpr double kLeastSymmetry = 0.7, kSureSymmetry = 0.9;  // of the walls behind a mouth
 
 /// Row of a mouth whose lips are not clearly round: where an edge across ends both walls, if there is one.
 double secondWitness(const PipetteStrip& strip, const HoldingMouth& mouth) {
@@ -73,7 +74,7 @@ PipetteDetection refineHolding(const Frame& frame, PipetteAxis axis, const cv::P
   found.taper = axis.taper;
   found.symmetry = fit.symmetry;
   found.clearness = mouth.score;
-  found.setCovariance(mouth.deviation, fit.offset_deviation * kAxisStripStep);
+  found.setCovariance(std::hypot(mouth.deviation, kMouthModel), fit.offset_deviation * kAxisStripStep);
   found.which_end = mouth.faint;
   found.finding = mouth.doubt.empty() ? Finding::found() : Finding::uncertain(mouth.doubt);
   if (found.symmetry < kSureSymmetry) {

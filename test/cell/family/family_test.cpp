@@ -99,6 +99,9 @@ TEST(Family, SaysWhyACellIsNoMember) {
   other.needle.contact.mode = "sliding";
   other.cell.layers.front().surface_tension = 0.1 * 17.9e3 * 28e-6;
   EXPECT_EQ(misfit(homogeneous, other), "surface_tension 0.1, not 0, contact sliding, not sticking");
+  other = scene;
+  other.cell.layers.front().material.mooney_ratio = 0.5;
+  EXPECT_EQ(misfit(homogeneous, other), "mooney_ratio 0.5, not 0.25");
   other = zona.member(Eigen::Vector3d::Zero());
   other.holding_pipette.contact_radius = 0.179;
   EXPECT_EQ(misfit(zona, other), "holding_radius 0.179 of [0.35, 0.364]");
