@@ -6,13 +6,25 @@
 
 namespace microinjection {
 
+namespace {
+
+/// A new number changes the identity of the cells alone that have it: the prepared data of all others stay good.
+bool isDescribed(const MaterialParameter& parameter, const std::string& model) {
+  const bool was_first = parameter.value == &MaterialConfig::mooney_ratio;  // in every text, from the beginning
+  return parameter.ofAllModels() || model == parameter.model || was_first;
+}
+
+}  // namespace
+
 std::string describeCellAndTip(const Scene& scene) {
   std::ostringstream out;
   out << std::hexfloat;
   for (const Scene::Layer& layer : scene.cell.layers) {
     const MaterialConfig& material = layer.material;
     out << "layer " << layer.outer_radius << " tension " << layer.surface_tension << ' ' << material.model;
-    for (const MaterialParameter& each : materialParameters()) out << ' ' << material.*each.value;
+    for (const MaterialParameter& each : materialParameters()) {
+      if (isDescribed(each, material.model)) out << ' ' << material.*each.value;
+    }
     for (const PronyTerm& term : material.viscoelasticity.prony) {
       out << " prony " << term.modulus_ratio << ' ' << term.relaxation_time;
     }
