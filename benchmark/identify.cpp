@@ -3,12 +3,12 @@
 #include <cstdio>
 #include <memory>
 #include <random>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "base/cpu_time.h"
 #include "base/errors.h"
+#include "base/separated.h"
 #include "benchmark/bench_main.h"
 #include "benchmark/common/printed_table.h"
 #include "benchmark/common/puncture_trial.h"
@@ -35,8 +35,7 @@ class IdentifyTable {
         "trial,kind,modulus_error,modulus_covered,contact_error_m,puncture_error,time_s,verdict,core_modulus,"
         "rival_advantage,lowest_modulus,highest_modulus,layers_known,puncture_law,puncture_depth_m,"
         "puncture_depth_error,force_in_50,force_in_90,depth_in_50,depth_in_90\n");
-    std::istringstream kinds(options_.kinds);
-    for (std::string kind; std::getline(kinds, kind, ',');) {
+    for (const std::string& kind : separated(options_.kinds)) {
       const bool main = kind == "homogeneous" || kind == "zona";
       for (int trial = 0; trial < (main ? options_.trials / 2 : options_.trials / 5); ++trial) run(kind, trial);
     }

@@ -77,11 +77,9 @@ void measureReal(const Micrographs& micrographs, const TakeRow& take) {
 }
 
 void writeContactSheet(const std::vector<SheetImage>& images) {
-  const std::string extension = std::filesystem::path(vision_options.contact_sheet).extension();
-  if (extension != ".png" && extension != ".jpg")
-    throw ConfigError("--contact-sheet " + vision_options.contact_sheet + ": must end in .png or .jpg");
   std::vector<unsigned char> file;
-  cv::imencode(extension, contactSheet(images, vision_options.eye), file);
+  cv::imencode(std::filesystem::path(vision_options.contact_sheet).extension(),
+               contactSheet(images, vision_options.eye), file);
   writeFileAtomically(vision_options.contact_sheet, std::string(file.begin(), file.end()));
 }
 
@@ -100,14 +98,18 @@ std::string table() {
   };
   const std::string& only = vision_options.only;
   const bool sheet = !vision_options.contact_sheet.empty();
+  const std::string extension = std::filesystem::path(vision_options.contact_sheet).extension();
+  if (sheet && extension != ".png" && extension != ".jpg")
+    throw ConfigError("--contact-sheet " + vision_options.contact_sheet + ": must end in .png or .jpg");
   for (const VisionCondition& condition : visionConditions()) {
     if (!only.empty() && condition.name != only) continue;
     renderedRows(condition, vision_options.seed, vision_options.images, vision_options.pipettes_only,
                  vision_options.eye, take);
   }
   const char* folder = std::getenv(kFolderVariable);
-  if (sheet && folder == nullptr) writeContactSheet(renderedSheet(vision_options.seed));
-  if (folder != nullptr && (only.empty() || isRealSet(only))) {
+  const bool real = folder != nullptr && (only.empty() || isRealSet(only));
+  if (sheet && !real) writeContactSheet(renderedSheet(vision_options.seed));
+  if (real) {
     Micrographs micrographs(folder);
     if (!vision_options.micrographs.empty()) micrographs.keepOnly(vision_options.micrographs);
     if (sheet) writeContactSheet(realSheet(micrographs, vision_options.eye != nullptr));

@@ -8,6 +8,7 @@
 #include "base/cache_file.h"
 #include "base/errors.h"
 #include "base/parse_number.h"
+#include "base/separated.h"
 
 namespace microinjection {
 namespace {
@@ -15,13 +16,6 @@ namespace {
 constexpr char kColumns[] = "task,kind,coordinates,piece";
 constexpr char kChecksum[] = ", checksum ";
 constexpr char kAxis[] = "axis", kPath[] = "path";
-
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts;
-  std::istringstream in(text);
-  for (std::string part; std::getline(in, part, separator);) parts.push_back(part);
-  return parts;
-}
 
 }  // namespace
 
@@ -35,7 +29,7 @@ std::string coordinatesText(const Eigen::VectorXd& coordinates, char separator) 
 }
 
 std::optional<Eigen::VectorXd> parseCoordinates(const std::string& text, char separator) {
-  const std::vector<std::string> parts = split(text, separator);
+  const std::vector<std::string> parts = text.empty() ? std::vector<std::string>() : separated(text, separator);
   Eigen::VectorXd coordinates(static_cast<Eigen::Index>(parts.size()));
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const auto number = parseNumber<double>(parts[i]);
@@ -88,7 +82,7 @@ void FamilyPlan::load(const std::string& file) {
   std::istringstream rows(rest.str());
   std::getline(rows, row);  // the columns' names
   while (std::getline(rows, row)) {
-    const std::vector<std::string> fields = split(row, ',');
+    const std::vector<std::string> fields = separated(row);
     const auto piece = fields.size() == 4 ? parseNumber<int>(fields[3]) : std::nullopt;
     const auto coordinates = piece ? parseCoordinates(fields[2], ' ') : std::nullopt;
     if (!coordinates) throw ConfigError(file + ": '" + row + "' is no task");

@@ -6,12 +6,12 @@
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
-#include <sstream>
 
 #include "base/config_errors.h"
 #include "base/errors.h"
 #include "base/output_files.h"
 #include "base/plausible.h"
+#include "base/separated.h"
 #include "base/worker_processes.h"
 
 namespace microinjection {
@@ -50,11 +50,8 @@ not use its values; 5 the record does not determine a value: its interval is ope
 Options)help";
 
 std::vector<std::string> split(const std::string& text) {
-  std::vector<std::string> items;
-  std::istringstream in(text);
-  for (std::string item; std::getline(in, item, ',');) {
-    if (!item.empty()) items.push_back(item);
-  }
+  std::vector<std::string> items = separated(text);
+  items.erase(std::remove(items.begin(), items.end(), ""), items.end());
   return items;
 }
 

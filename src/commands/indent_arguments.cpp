@@ -5,11 +5,11 @@
 #include <cmath>
 #include <iostream>
 #include <limits>
-#include <sstream>
 
 #include "base/config_errors.h"
 #include "base/errors.h"
 #include "base/output_files.h"
+#include "base/separated.h"
 
 namespace microinjection {
 namespace {
@@ -48,8 +48,7 @@ Options)";
 
 std::vector<double> parseNumbers(const std::string& option, const std::string& text, const std::string& wanted) {
   std::vector<double> numbers;
-  std::istringstream items(text + ",");
-  for (std::string item; std::getline(items, item, ',');) {
+  for (const std::string& item : separated(text)) {
     std::size_t used = 0;
     double number = std::numeric_limits<double>::quiet_NaN();
     try {

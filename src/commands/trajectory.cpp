@@ -6,17 +6,10 @@
 #include <sstream>
 
 #include "base/errors.h"
+#include "base/separated.h"
 
 namespace microinjection {
 namespace {
-
-std::vector<std::string> split(const std::string& line) {
-  std::vector<std::string> cells;
-  std::istringstream stream(line);
-  for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
-  if (!line.empty() && line.back() == ',') cells.emplace_back();
-  return cells;
-}
 
 /// Indices of the columns that are used.
 struct Columns {
@@ -70,7 +63,7 @@ std::vector<ContactSample> readIndentationPath(const std::string& path) {
   std::ifstream file(path);
   std::string line;
   if (!std::getline(file, line)) throw ConfigError(path + ": cannot be read");
-  const Columns columns(split(line), path);
+  const Columns columns(separated(line), path);
   std::vector<ContactSample> longest, contact;
   const auto end = [&] {
     cutAtDeepest(contact);
@@ -78,7 +71,7 @@ std::vector<ContactSample> readIndentationPath(const std::string& path) {
     contact.clear();
   };
   while (std::getline(file, line)) {
-    const std::vector<std::string> cells = split(line);
+    const std::vector<std::string> cells = separated(line);
     const std::size_t flag = columns.punctured.value_or(0);
     if (columns.punctured && cells.size() > flag && cells[flag] == "1") {
       cutAtPuncture(contact);

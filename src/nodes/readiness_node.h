@@ -16,7 +16,7 @@ namespace microinjection {
 /// to do. It only listens: without it the session works as well.
 ///
 /// In: /diagnostics, /needle/loop_state, /controller/loop_state, /haptic/loop_state
-/// Out: /session/readiness (latched, at each change and twice a second)
+/// Out: /session/readiness (latched, twice a second)
 ///
 /// Parameters: see kHelp
 class ReadinessNode {

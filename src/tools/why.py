@@ -10,6 +10,8 @@ Exit status: 0 the session is ready; 1 it is not; 2 bad usage; 3 there is no ses
 import argparse
 import sys
 import textwrap
+from queue import Empty, Queue
+from xmlrpc.client import ProtocolError
 
 import rospy
 
@@ -33,30 +35,50 @@ def text_of(readiness):
     return "\n".join(lines)
 
 
+def newest(queue):
+    """The next message, and after it the newest that has come meanwhile; None after PATIENCE."""
+    try:
+        message = queue.get(timeout=PATIENCE)
+        while not queue.empty():
+            message = queue.get()
+    except Empty:
+        return None
+    return message
+
+
+def is_old(readiness):
+    """A latched message of a node that has ended or hangs is no answer."""
+    return abs((rospy.Time.now() - readiness.header.stamp).to_sec()) > PATIENCE
+
+
 def main():
-    parser = argparse.ArgumentParser(prog="why", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--watch", action="store_true", help="goes on, and prints what is new, until Ctrl-C")
+    parser = argparse.ArgumentParser(prog='why', description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('--watch', action='store_true', help='goes on, and prints what is new, until Ctrl-C')
     arguments = parser.parse_args(rospy.myargv()[1:])
     try:
         rospy.get_master().getPid()
-    except OSError:
-        print("why: there is no ROS master: no session runs, or ROS_MASTER_URI names another one", file=sys.stderr)
+    except (OSError, ProtocolError, ValueError):
+        print('why: there is no ROS master: no session runs, or ROS_MASTER_URI names another one', file=sys.stderr)
         return 3
-    rospy.init_node("why", anonymous=True, disable_signals=True)
+    rospy.init_node('why', anonymous=True, disable_signals=True)
+    queue = Queue()
+    rospy.Subscriber('/session/readiness', Readiness, queue.put)
     said = None
-    while True:
-        try:
-            readiness = rospy.wait_for_message("/session/readiness", Readiness, PATIENCE)
-        except rospy.ROSException:
-            print("why: nothing on /session/readiness: no session runs, or its node readiness has ended", file=sys.stderr)
-            return 3
-        except KeyboardInterrupt:
-            return 0
-        if text_of(readiness) != said:
-            said = text_of(readiness)
-            print(said, flush=True)
-        if not arguments.watch:
-            return 0 if readiness.ready else 1
+    try:
+        while True:
+            readiness = newest(queue)
+            if readiness is not None and is_old(readiness):
+                readiness = newest(queue)
+            if readiness is None:
+                print('why: nothing on /session/readiness: no session runs, or its node readiness has ended', file=sys.stderr)
+                return 3
+            if text_of(readiness) != said:
+                said = text_of(readiness)
+                print(said, flush=True)
+            if not arguments.watch:
+                return 0 if readiness.ready else 1
+    except KeyboardInterrupt:
+        return 0
 
 
 if __name__ == "__main__":

@@ -5,10 +5,10 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 
 #include "base/cache_file.h"
 #include "base/errors.h"
+#include "base/separated.h"
 
 namespace microinjection {
 namespace {
@@ -32,8 +32,7 @@ std::string columns(const Family& family) {
 
 std::vector<double> numbers(const std::string& line, const std::string& where) {
   std::vector<double> values;
-  std::istringstream in(line);
-  for (std::string item; std::getline(in, item, ',');) {
+  for (const std::string& item : separated(line)) {
     char* end = nullptr;
     values.push_back(std::strtod(item.c_str(), &end));
     if (item.empty() || *end != '\0' || !std::isfinite(values.back())) {

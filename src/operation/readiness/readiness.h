@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,28 +35,36 @@ class Readiness {
 
   /// The most important first.
   std::vector<Hindrance> hindrances(double time) const;
-  /// Whether the needle follows: every loop that was heard does, and no node has an error.
+  /// Whether the needle follows: every loop of the session's nodes does, each of them was heard, and none has an error.
   bool isReady(double time) const;
 
-  static constexpr double kSilence = 3.5;  ///< s, without a word of a node, and of the session's start
+  static constexpr double kSilence = 3.5;  ///< s, without a word of a node
+  static constexpr double kStart = 30;     ///< s, from the session's first word to that of a node that starts slowly
 
  private:
+  /// What a status says, or why a loop holds the needle: true until it is said anew, or for kSilence.
   struct Said {
-    Hindrance::Level level = Hindrance::Level::kInformation;
     std::string message;
+    double time = 0;  ///< s
+    Hindrance::Level level = Hindrance::Level::kInformation;
   };
   struct Node {
     double heard = 0;  ///< s
     std::map<std::string, Said> statuses;
-    std::string hold_reason;
-    bool has_loop = false;
+    std::optional<Said> loop;
   };
 
+  static bool isFresh(const Said& said, double time) { return time - said.time <= kSilence; }
+  void addOf(const std::string& name, const Node& node, double time, std::vector<Hindrance>& all) const;
+  /// Of a node that the session has: that it has not said anything yet, or does not any more.
+  void addSilence(const std::string& name, double time, std::vector<Hindrance>& all) const;
+  bool follows(const std::string& name, double time) const;
   Hindrance hindrance(const std::string& node, const std::string& status, Hindrance::Level level,
                       const std::string& reason) const;
 
   std::vector<std::string> expected_;
   const Remedies& remedies_;
+  mutable std::map<std::string, std::optional<Remedies::Remedy>> known_;  ///< remedies that were looked up, by reason
   std::map<std::string, Node> nodes_;
   double begin_ = -1;  ///< s, of the first word of any node
 };

@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::size_t kFewestLetters = 6;  // of a pattern: a shorter one is a name or a value
 constexpr std::size_t kFewestWords = 2;    // of one: else it is a name
-constexpr const char* kCode = "    ";      // begins a line of a block of code, which belongs to what is before it
+constexpr std::size_t kLongestReason = 500;
+constexpr const char* kCode = "    ";  // begins a line of a block of code, which belongs to what is before it
 
 /// The rest of a line that begins an item of a list; none: it does not.
 std::optional<std::string> itemBegun(const std::string& line) {
@@ -57,11 +58,11 @@ Remedies::Remedies(const std::string& markdown) {
     const std::optional<std::string> begun = itemBegun(line);
     const bool code = line.rfind(kCode, 0) == 0;
     if (begun || (blank && !line.empty() && !code) || line[0] == '#') finish();
-    if (!line.empty() && line[0] == '#') {
-      section = line.substr(line.find_first_not_of("# "));
-    } else if (!line.empty()) {
-      item += (item.empty() ? "" : " ") + (begun ? *begun : line.substr(line.find_first_not_of(' ')));
-    }
+    const std::string words = begun ? *begun : line.substr(std::min(line.find_first_not_of("# "), line.size()));
+    if (line[0] == '#')
+      section = words;
+    else if (!words.empty())
+      item += (item.empty() ? "" : " ") + words;
   }
   finish();
 }
@@ -96,7 +97,8 @@ void Remedies::addPattern(const std::string& pattern, const Remedy& remedy) {
   if (letters >= kFewestLetters) entries_.push_back({pattern, std::regex(expression), letters, remedy});
 }
 
-std::optional<Remedies::Remedy> Remedies::of(const std::string& reason) const {
+std::optional<Remedies::Remedy> Remedies::of(const std::string& whole) const {
+  const std::string reason = whole.substr(0, kLongestReason);
   const Entry* best = nullptr;
   for (const Entry& entry : entries_) {
     if ((best == nullptr || entry.letters > best->letters) && std::regex_search(reason, entry.expression))

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <sstream>
 
 #include "base/errors.h"
+#include "base/separated.h"
 #include "operation/teleoperation/generated_motion.h"
 
 namespace microinjection {
@@ -28,9 +28,7 @@ double toNumber(const std::string& text, const std::string& where) {
 }
 
 HandMotion::Sample toSample(const std::string& line, const std::string& where) {
-  std::vector<std::string> cells;
-  std::istringstream in(line);
-  for (std::string cell; std::getline(in, cell, ',');) cells.push_back(cell);
+  const std::vector<std::string> cells = separated(line);
   if (cells.size() != 6) throw ConfigError(where + ": must have six cells: " + kHeader);
   if (cells[4] != "0" && cells[4] != "1") throw ConfigError(where + ": clutch = " + cells[4] + ", must be 0 or 1");
   HandMotion::Sample sample;

@@ -21,13 +21,6 @@ double chiSquaredLimit(double confidence, double freedom) {
   return boost::math::quantile(boost::math::chi_squared(freedom), confidence);
 }
 
-double medianOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  if (values.size() % 2 == 1) return *middle;
-  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
-}
-
 double robustDeviation(const std::vector<double>& values) {
   const double median = medianOf(values);
   std::vector<double> distances;

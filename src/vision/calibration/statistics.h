@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "base/median.h"
+
 namespace microinjection {
 
 /// Two-sided interval of a value.
@@ -28,8 +30,6 @@ double fisherLimit(double confidence, double n, double m);
 /// The x that chi^2 with `freedom` degrees of freedom stays below with probability `confidence`.
 double chiSquaredLimit(double confidence, double freedom);
 
-/// Median; the mean of the two middle ones of an even number. @pre not empty
-double medianOf(std::vector<double> values);
 /// 1.4826 times the median of the distances from the median: the deviation of normal values,
 /// unmoved by fewer than half of outliers. @pre not empty
 double robustDeviation(const std::vector<double>& values);

@@ -14,9 +14,6 @@ constexpr int kMostClimb = 8;      // columns
 constexpr double kBorder = 0.5;    // strength of a ray that sees a border
 constexpr double kFoundCoverage = 0.3;
 constexpr int kIndependentRays = 3;  // neighbours that the smoothing ties together
-// px, of a mean diameter. With it 98 to 99 % of drawn and rendered diameters are within 1.96 deviations, without it 78
-// to 97 %: doc/design/detection.md.
-constexpr double kModelDeviation = 0.05;
 
 void forbid(const PolarMap& map, const BorderBand& band, cv::Mat& strength) {
   for (int ray = 0; ray < map.rays(); ++ray) {

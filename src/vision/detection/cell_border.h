@@ -12,12 +12,16 @@ namespace microinjection {
 
 /// A centre is sure below this standard deviation, px.
 constexpr double kSureCentre = 0.3;
+/// px, standard deviation of a mean diameter beside that of its points, see diameterDeviation(). With it 98 to 99 % of
+/// drawn and rendered diameters are within 1.96 deviations, without it 78 to 97 %: doc/design/detection.md.
+constexpr double kModelDeviation = 0.05;
 
 /// A closed border of a cell: its ellipse, and where it was seen.
 struct CellBorder {
   Finding finding;
   bool centred = false;     ///< uncertain, but what displaces the border does so on all sides: its centre is sure
   bool which_line = false;  ///< uncertain, since it may be another one of several lines
+  bool ringed = false;      ///< uncertain, since a ring is seen outside of it
   Ellipse ellipse;          ///< px
   Ellipse line;             ///< px, by its own line alone, which is followed from frame to frame
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of centre x, centre y, mean diameter, px^2

@@ -85,7 +85,8 @@ void warn(CellLayers& layers) {
   if (zona && outer.rim == 0 && outer.finding.isFound()) {
     doubt(outer, "the zona's outer border is not a dark line", true);
     // Whoever knows that the zona ends there knows the line, unless it is another one on each side or a halo.
-    outer.which_line = outer.residual < kSameLineResidual * outer.ellipse.meanDiameter() &&
+    outer.which_line = outer.polarity != Polarity::kEither &&
+                       outer.residual < kSameLineResidual * outer.ellipse.meanDiameter() &&
                        outer.ellipse.meanDiameter() > kThickerThanHalo * layers.ooplasm.ellipse.meanDiameter();
   }
   for (CellBorder* border : all) {
@@ -97,6 +98,11 @@ void warn(CellLayers& layers) {
   }
 }
 
+void doubtRinged(CellBorder& outer) {
+  outer.finding = Finding::uncertain("a ring is seen outside of the border: it may be the zona's inner one");
+  outer.centred = outer.which_line = false;
+}
+
 /// Takes the certainty from an outer border that has a ring about it: it may be the zona's inner one.
 void doubtWithinRing(const Frame& frame, const std::string& look, CellBorder& outer, double largest) {
   const double limit = std::min(kOutermost, largest / outer.ellipse.meanDiameter());
@@ -106,8 +112,8 @@ void doubtWithinRing(const Frame& frame, const std::string& look, CellBorder& ou
   const CellBorder beyond = searchBand(frame, outer, kBorderGap, limit, look, kOutwards);
   const bool clear = beyond.consistency > kRingConsistency && beyond.contrast > kRingContrast * outer.contrast;
   if (!isRing(beyond) || !clear || beyond.polarity == Polarity::kFalling) return;
-  outer.finding = Finding::uncertain("a ring is seen outside of the border: it may be the zona's inner one");
-  outer.centred = outer.which_line = false;
+  outer.ringed = true;
+  doubtRinged(outer);
 }
 
 /// Takes the certainty in DIC from an outer border that is another line on each side.
@@ -238,6 +244,8 @@ CellLayers followLayers(const Frame& frame, const CellLayers& previous, const st
   layers.zona_inner.ellipse.centre += layers.zona_outer.line.centre - previous.zona_outer.line.centre;
   refitLayersTo(frame, look, previous, layers);
   doubtMixedLines(frame, look, layers.zona_outer);
+  layers.zona_outer.ringed = previous.zona_outer.ringed;
+  if (layers.zona_outer.ringed) doubtRinged(layers.zona_outer);
   return layers;
 }
 

@@ -21,19 +21,16 @@ constexpr double kMore = 0.04, kLeastOn = 0.5, kLeastNear = 0.4;  // shares of t
 constexpr double kSameRadius = 1;                                 // px, of two measurements of a radius
 constexpr double kClearOfRim = 3;                                 // px, of the zona's line from the ooplasm's rim
 constexpr double kSameSize = 0.01;                                // of the radius, from frame to frame
-// px, standard deviation of a mean diameter beside that of the fit: what rim and line of a cell are not as the model's.
-// Chosen so that 95 % of rendered borders in focus are in their intervals.
-constexpr double kOoplasmModel = 0.2, kInnerModel = 0.08, kOuterModel = 0;
+constexpr double kInnerModel = 0.15;     // px, as kOoplasmModel of cell_detector.cpp, of a zona's inner border
 constexpr double kMostDeparture = 0.05;  // of the radius, that the fit may be from the first borders
 
 double radiusOf(const Ellipse& ellipse) { return 0.5 * ellipse.meanDiameter(); }
 
-/// @param model  px, standard deviation of the model's own error
-void take(CellBorder& border, const LayerFit::Border& fit, const Finding& finding, double model) {
+void take(CellBorder& border, const LayerFit::Border& fit, const Finding& finding) {
   border.finding = finding;
+  border.which_line = false;
   border.ellipse = fit.ellipse;
   border.covariance = fit.covariance;
-  border.covariance(2, 2) += model * model;
   border.polarity = border.polarity == Polarity::kEither ? Polarity::kEither : Polarity::kRising;
 }
 
@@ -54,7 +51,7 @@ bool takeOoplasm(const LayerFit& fit, const std::string& look, bool leads, CellL
   // Without a clear inner line of the zona the fit's rim and that line stand for each other.
   const bool own = layers.ooplasm.finding.isFound() && agree && !leads && look != "dic";
   if (sure && !own && (look != "phase" || (agree && layers.ooplasm.finding.isFound()))) {
-    take(layers.ooplasm, fit.ooplasm, Finding::found(), kOoplasmModel);
+    take(layers.ooplasm, fit.ooplasm, Finding::found());
     layers.ooplasm.shift = layers.ooplasm.rim = fit.ooplasm.width;
     return true;
   }
@@ -72,8 +69,8 @@ void takeInner(const LayerFit& fit, bool leads, bool described, CellLayers& laye
   const bool clear = described || apart > kClearOfRim;
   const bool sure = leads && clear && fit.inner.line < 0 && fit.inner.deviation() < kSureRadius;
   take(layers.zona_inner, fit.inner,
-       sure ? Finding::found() : Finding::uncertain("the zona's inner line is faint beside the ooplasm's rim"),
-       kInnerModel);
+       sure ? Finding::found() : Finding::uncertain("the zona's inner line is faint beside the ooplasm's rim"));
+  layers.zona_inner.covariance(2, 2) += kInnerModel * kInnerModel;
   // A line that is not one, or not the only one, is no measurement: then there may be no gap at all.
   const bool seen = leads && fit.inner.line < 0 && fit.inner.deviation() < kSeenRadius;
   if (!seen) {
@@ -122,7 +119,7 @@ bool takeSharp(const LayerFit& fit, const std::string& look, bool leads, CellLay
   if (!isSharp(fit) || !describesOuter(fit, layers)) return false;
   const bool bright = look != "dic" && look != "phase";
   if (!bright || !layers.zona_outer.finding.isFound() || layers.zona_outer.rim == 0)
-    take(layers.zona_outer, fit.outer, Finding::found(), kOuterModel);
+    take(layers.zona_outer, fit.outer, Finding::found());
   else
     settleOuter(fit, layers.zona_outer);
   // In phase contrast the ooplasm's border may be a rim off, the zona's line is not.
@@ -164,12 +161,18 @@ LayerFit refit(const Frame& frame, const std::string& look, const CellLayers& pr
   return fitLayers(frame, guess, look);
 }
 
+/// Who knew which line it was in the frame before does not know whether this is that one.
+void doubtChanged(CellBorder& border, const std::string& reason) {
+  border.finding = Finding::uncertain(reason);
+  border.centred = border.which_line = false;
+}
+
 /// A cell keeps its size from frame to frame: what does not is another border.
 void requireSameSize(const CellBorder& previous, CellBorder& border) {
   const double before = radiusOf(previous.ellipse);
   if (!previous.finding.isFound() || !border.finding.isFound()) return;
   if (std::abs(radiusOf(border.ellipse) - before) > kSameSize * before)
-    border.finding = Finding::uncertain("the cell has changed its size: this may be another border");
+    doubtChanged(border, "the cell has changed its size: this may be another border");
 }
 
 }  // namespace
@@ -177,8 +180,7 @@ void requireSameSize(const CellBorder& previous, CellBorder& border) {
 void requireSameLine(const CellBorder& previous, CellBorder& border) {
   const double before = previous.line.meanDiameter();
   if (!border.finding.hasValues() || std::abs(border.line.meanDiameter() - before) < kSameSize * before) return;
-  border.finding = Finding::uncertain("the border has changed its size: it may be another one");
-  border.centred = false;
+  doubtChanged(border, "the border has changed its size: it may be another one");
 }
 
 bool fitLayersTo(const Frame& frame, const std::string& look, CellLayers& layers) {

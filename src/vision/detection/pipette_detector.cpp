@@ -19,6 +19,7 @@ constexpr int kFinest = 1, kFinestBesideBorder = 2;  // see AxisSearch::finer
 constexpr double kBesideBorder = 120;                // px
 // Of the half width, of a mouth: a second eye sees it along the axis better than beside it.
 constexpr double kMouthAlong = 0.27, kSameMouthAlong = 0.12, kSameMouthBeside = 0.5;
+constexpr double kSameDirection = 0.6;  // rad, of a wide shaft that the frame cuts a second eye sees it slanted
 constexpr double kFaded = 3;            // tolerances along the shaft, in which a second eye overlooks a thin tip
 constexpr double kSameClearness = 0.9;  // of the clearness, of an end that is told by a second eye
 
@@ -83,7 +84,9 @@ PipetteDetection PipetteDetector::detect(const Frame& frame, const ProposedPipet
   if (elsewhere || !found.finding.isFound()) {
     const PipetteDetection refined =
         refine(frame, {proposed.end, direction, proposed.half_width, 0, 0}, proposed.end, tolerance, kRoundsAtProposal);
-    const bool better = elsewhere ? refined.finding.hasValues() : refined.finding.isFound();
+    const bool better = elsewhere
+                            ? refined.finding.hasValues()
+                            : refined.finding.isFound() && (isAtEnd(refined, proposed) || !isAtEnd(found, proposed));
     if (better) found = refined;
   }
   if (!found.finding.hasValues()) {
@@ -103,10 +106,17 @@ bool PipetteDetector::isAllowed(const ProposedPipette& proposed) const {
 
 bool PipetteDetector::isAtEnd(const PipetteDetection& pipette, const ProposedPipette& proposed) const {
   const cv::Point2d seen = pipette.inAxes(proposed.end);
+  if (angleBetween(pipette.direction, proposed.direction()) > kSameDirection) return false;
   if (config_.kind == "holding")
     return std::abs(seen.x) <= kMouthAlong * pipette.half_width && std::abs(seen.y) <= pipette.half_width;
   return seen.x >= -proposed.tolerance && seen.x <= kFaded * proposed.tolerance &&
          std::abs(seen.y) <= proposed.tolerance;
+}
+
+bool PipetteDetector::isSameEdge(const PipetteDetection& before, const PipetteDetection& now) {
+  return now.clearness >= kSameClearness * *before.confirmed &&
+         std::abs(before.inAxes(now.end).x) <= kSameMouthAlong * before.half_width &&
+         std::abs(now.half_width / before.half_width - 1) < kSameMouthAlong;
 }
 
 bool PipetteDetector::isSameMouth(const PipetteDetection& pipette, const ProposedPipette& proposed) const {
@@ -159,7 +169,7 @@ PipetteDetection PipetteDetector::track(const Frame& frame, const PipetteDetecti
   const bool injection = config_.kind == "injection";
   found = refine(frame, axis, previous.end, reach + (injection ? kTipReach : kMouthReach), injection ? 2 : 1);
   if (previous.second) found.hear(*previous.second);
-  if (previous.confirmed && found.clearness >= kSameClearness * *previous.confirmed) {
+  if (previous.confirmed && isSameEdge(previous, found)) {
     found.confirmed = previous.confirmed;
     found.confirm();
   }

@@ -45,6 +45,8 @@ class PipetteDetector {
   PipetteDetection track(const Frame& frame, const PipetteDetection& previous, double reach) const;
 
  private:
+  /// Whether an end that a second eye has told is the same edge in the next frame.
+  static bool isSameEdge(const PipetteDetection& before, const PipetteDetection& now);
   /// Whether a mouth is so near to the proposed one that this tells which of several edges it is.
   bool isSameMouth(const PipetteDetection& pipette, const ProposedPipette& proposed) const;
   cv::Rect region() const;  ///< that is told; empty: none

@@ -25,6 +25,8 @@ class Scale {
     ellipse(border.ellipse);
     ellipse(border.line);
     covariance(border.covariance);
+    // What diameterDeviation() adds is in px of the frame that was searched.
+    if (factor_ > 1) border.covariance(2, 2) += kModelDeviation * kModelDeviation * (factor_ * factor_ - 1);
     for (double* value : {&border.residual, &border.shift, &border.rim}) length(*value);
     border.contrast /= factor_;
     places(border.points);

@@ -13,9 +13,10 @@ class ReadinessNodeTest : public testing::Test {
  protected:
   ReadinessNodeTest() {
     session_.start();
-    session_.add("readiness", "readiness",
-                 YAML::Load("{nodes: [micromanipulator, injection_controller, haptic_bridge, somebody]}"));
     session_.world().hear<cell_microinjection::Readiness>(kTopic);
+  }
+  void listen(const std::string& nodes) {
+    session_.add("readiness", "readiness", YAML::Load("{nodes: [" + nodes + "]}"));
   }
   const cell_microinjection::Readiness& newest() {
     return *session_.world().hear<cell_microinjection::Readiness>(kTopic).newest();
@@ -38,7 +39,9 @@ class ReadinessNodeTest : public testing::Test {
 };
 
 TEST_F(ReadinessNodeTest, TheReasonToBeMendedFirstComesFirstAndHasItsRemedy) {
+  listen("micromanipulator, injection_controller, haptic_bridge");
   ASSERT_TRUE(until([](const auto& message) { return message.ready; }));
+  EXPECT_TRUE(newest().hindrances.empty() || !newest().hindrances.front().holds);
   session_.world().command("/needle/state_command", "disable");
   ASSERT_TRUE(until([](const auto& message) { return !message.ready && message.hindrances.size() > 1; }));
   const cell_microinjection::Hindrance& first = newest().hindrances.front();
@@ -52,8 +55,9 @@ TEST_F(ReadinessNodeTest, TheReasonToBeMendedFirstComesFirstAndHasItsRemedy) {
 }
 
 TEST_F(ReadinessNodeTest, ANodeThatNeverSpeaksIsNamed) {
+  listen("micromanipulator, somebody");
   ASSERT_TRUE(until([](const auto& message) { return of(message, "somebody") != nullptr; }));
-  EXPECT_EQ(of(newest(), "somebody")->reason, "somebody is silent");
+  EXPECT_EQ(of(newest(), "somebody")->reason, "the node somebody has not started yet");
   EXPECT_FALSE(newest().ready);
 }
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 namespace microinjection {
 namespace {
 
@@ -15,13 +17,25 @@ class ReadinessTest : public testing::Test {
     return all;
   }
 
-  Readiness readiness_{{"micromanipulator", "injection_controller", "haptic_bridge"}, Remedies::builtIn()};
+  explicit ReadinessTest(std::vector<std::string> nodes = {"micromanipulator", "injection_controller", "haptic_bridge"})
+      : readiness_(std::move(nodes), Remedies::builtIn()) {}
+
+  Readiness readiness_;
+};
+
+/// Which nodes the session has is not known.
+class SomeNodesTest : public ReadinessTest {
+ protected:
+  SomeNodesTest() : ReadinessTest({}) {}
 };
 
 TEST_F(ReadinessTest, IsReadyWhereEveryLoopFollows) {
   EXPECT_FALSE(readiness_.isReady(0)) << "nobody has said anything";
   readiness_.hearLoop("micromanipulator", "", 0);
   readiness_.hearLoop("injection_controller", "", 0);
+  EXPECT_FALSE(readiness_.isReady(0)) << "the bridge has not said anything";
+  readiness_.hearStatus("haptic_bridge", "cycle", Level::kInformation, "999 Hz", 0);
+  EXPECT_FALSE(readiness_.isReady(0)) << "nothing is known of its loop";
   readiness_.hearLoop("haptic_bridge", "", 0);
   readiness_.hearStatus("vision", "images", Level::kWarning, "microscope/image_raw is silent", 0);
   EXPECT_TRUE(readiness_.isReady(1)) << "an image is not needed";
@@ -44,7 +58,7 @@ TEST_F(ReadinessTest, WhatIsToBeMendedFirstComesFirst) {
   EXPECT_EQ(readiness_.hindrances(1).front().reason, "the ROS master is lost");
 }
 
-TEST_F(ReadinessTest, AStatusThatSaysWhatHoldsIsSaidOnce) {
+TEST_F(SomeNodesTest, AStatusThatSaysWhatHoldsIsSaidOnce) {
   readiness_.hearLoop("injection_controller", "no valid force", 0);
   readiness_.hearStatus("injection_controller", "control", Level::kWarning, "held: no valid force", 0);
   ASSERT_EQ(readiness_.hindrances(0).size(), 1U);
@@ -53,7 +67,7 @@ TEST_F(ReadinessTest, AStatusThatSaysWhatHoldsIsSaidOnce) {
 }
 
 /// Nothing is wrong, and nobody asks for a motion: behind what is wrong, and the needle does not follow.
-TEST_F(ReadinessTest, WhatIsNoAlarmComesLast) {
+TEST_F(SomeNodesTest, WhatIsNoAlarmComesLast) {
   readiness_.hearLoop("injection_controller", "no injection is under way", 0);
   readiness_.hearStatus("vision", "images", Level::kWarning, "microscope/image_raw is silent", 0);
   EXPECT_EQ(names(0), "vision, injection_controller");
@@ -63,14 +77,31 @@ TEST_F(ReadinessTest, WhatIsNoAlarmComesLast) {
 
 TEST_F(ReadinessTest, SilenceIsAReasonAndWhatWasSaidBeforeIsNone) {
   readiness_.hearLoop("micromanipulator", "DISABLED; allowed after enable", 0);
-  EXPECT_EQ(names(Readiness::kSilence), "micromanipulator");
-  readiness_.hearLoop("injection_controller", "", 3);
-  EXPECT_EQ(names(Readiness::kSilence + 1), "micromanipulator, haptic_bridge");
-  for (const Hindrance& each : readiness_.hindrances(Readiness::kSilence + 1)) {
-    EXPECT_EQ(each.reason, each.node + " is silent");
+  EXPECT_EQ(names(0), "micromanipulator, injection_controller, haptic_bridge");
+  EXPECT_EQ(readiness_.hindrances(0).back().reason, "the node haptic_bridge has not started yet");
+  readiness_.hearLoop("injection_controller", "", Readiness::kStart);
+  EXPECT_EQ(names(Readiness::kStart + 1), "micromanipulator, haptic_bridge");
+  for (const Hindrance& each : readiness_.hindrances(Readiness::kStart + 1)) {
+    EXPECT_EQ(each.reason, "the node " + each.node + " is silent");
     EXPECT_EQ(each.level, Level::kError);
     EXPECT_FALSE(each.remedy.empty()) << each.reason;
   }
+}
+
+/// A loop that hangs beside a node that goes on, and a node that came back with other statuses.
+TEST_F(ReadinessTest, EachWordHoldsForItsOwnTime) {
+  for (const char* node : {"micromanipulator", "injection_controller", "haptic_bridge"})
+    readiness_.hearLoop(node, "", 0);
+  readiness_.hearStatus("micromanipulator", "rig", Level::kError, "nothing has come; does your node run?", 0);
+  for (const double time : {2.0, 4.0}) {
+    readiness_.hearStatus("micromanipulator", "cycle", Level::kInformation, "999 Hz", time);
+    readiness_.hearLoop("injection_controller", "", time);
+    readiness_.hearLoop("haptic_bridge", "", time);
+  }
+  ASSERT_EQ(readiness_.hindrances(4).size(), 1U);
+  EXPECT_EQ(readiness_.hindrances(4).front().reason, "the loop of micromanipulator is silent");
+  EXPECT_FALSE(readiness_.hindrances(4).front().remedy.empty());
+  EXPECT_FALSE(readiness_.isReady(4));
 }
 
 }  // namespace

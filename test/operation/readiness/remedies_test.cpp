@@ -47,6 +47,11 @@ TEST(Remedies, AreReadFromThePage) {
   EXPECT_EQ(text("device"), "none");
 }
 
+TEST(Remedies, AnOddPageIsNoError) {
+  for (const char* page : {"", "#", "   \n#\n- \n- `", "1. `a b c d e f`", "    code\n"})
+    EXPECT_FALSE(Remedies(page).of("something else"));
+}
+
 TEST(Remedies, OfThePageThatIsBuiltIn) {
   const Remedies& remedies = Remedies::builtIn();
   EXPECT_GT(remedies.patterns().size(), 200U);
@@ -54,7 +59,8 @@ TEST(Remedies, OfThePageThatIsBuiltIn) {
        {"no valid needle position", "the operator is not present", "clutch is pressed", "no injection is under way",
         "Zaber: connected, no reply yet", "the tip is deeper than the cell was prepared for: withdraw it",
         "/needle/measured_cp is stale", "state is PAUSED, enable is allowed in DISABLED, ENABLED, FAULT",
-        "two nodes command the needle: a and b; allowed after enable"}) {
+        "two nodes command the needle: a and b; allowed after enable", "needle held: DISABLED", "needle held: PAUSED",
+        "the node vision has not started yet", "/focus/measured_js is silent"}) {
     const auto found = remedies.of(reason);
     ASSERT_TRUE(found) << reason;
     EXPECT_FALSE(found->text.empty()) << reason;

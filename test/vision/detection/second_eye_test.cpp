@@ -292,6 +292,29 @@ TEST_F(SecondEyeTest, ACellWhoseBorderItSeesAsThatOfAZonaIsNotSure) {
   EXPECT_EQ(seen().size.reason, "a network sees a zona's border where the cell's is measured");
 }
 
+/// Which of two rings is the zona's border a network cannot tell: not in the frame that is searched, and not in the
+/// next.
+TEST_F(SecondEyeTest, ABorderWithARingAboutItIsNotSureInTheNextFrameEither) {
+  const cv::Point centre(450, 300);
+  const auto frame = [&] {
+    cv::Mat image(600, 900, CV_8U, cv::Scalar(128)), noise(image.size(), CV_8U);
+    cv::circle(image, centre, 90, cv::Scalar(95), cv::FILLED);
+    cv::circle(image, centre, 122, cv::Scalar(100), 4);
+    cv::circle(image, centre, 150, cv::Scalar(112), 3);
+    cv::GaussianBlur(image, image, {}, 1.5);
+    cv::randn(noise, 10, 2);
+    return Frame(image + noise);
+  };
+  eye_->proposal = {};
+  eye_->proposal.cells.push_back({{centre, {90, 90}, 0}, Ellipse{centre, {122, 122}, 0}, false, false});
+  SpecimenTracker tracker(anyDirection(), eye_);
+  for (int i = 0; i < 3; ++i) {
+    const CellDetection& cell = tracker.next(frame()).cell;
+    EXPECT_FALSE(cell.confirmed) << i;
+    EXPECT_NE(cell.size.reason.find("a ring is seen outside"), std::string::npos) << i << cell.size.reason;
+  }
+}
+
 TEST_F(SecondEyeTest, LooksWhereSomethingIsSearchedOnly) {
   SpecimenTracker tracker(anyDirection(), eye_);
   for (int i = 0; i < 5; ++i) tracker.next(frame());
