@@ -47,7 +47,8 @@ PipetteDetection FrameSearch::pipette(const PipetteDetector& detector) {
   const std::optional<ProposedPipette>& other_kind = needle ? proposal().holding : proposal().injection;
   if (seen && detector.isAllowed(*seen) && !detector.isAtEnd(other, *seen))
     other.hear(Finding::uncertain(PipetteDetector::kSeenElsewhere));
-  else if (other_kind && isOn(*other_kind, other.end))
+  // Which kind comes from there is told: then the network has taken one for the other.
+  else if (other_kind && isOn(*other_kind, other.end) && !(told && detector.isAllowed(*other_kind)))
     other.hear(Finding::uncertain("a network sees a pipette of the other kind there"));
   else if (!told && !isGlass(other))
     other.hear(Finding::uncertain("a network sees no glass there"));

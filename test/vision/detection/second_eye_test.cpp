@@ -191,6 +191,10 @@ TEST_F(SecondEyeTest, APipetteOfTheOtherKindIsNotSure) {
   const PipetteDetection needle = seen(anyDirection()).injection;
   EXPECT_LT(cv::norm(needle.end - pixel(0, 60e-6)), 5);
   EXPECT_EQ(needle.finding.reason, "a network sees a pipette of the other kind there");
+  // Who is told that the needle comes from there knows better.
+  SpecimenTrackerConfig told = anyDirection();
+  told.injection.any_direction = false;
+  EXPECT_EQ(seen(told).injection.finding.reason, "");
   // Where it sees glass of no kind that it can tell, the needle is one.
   eye_->proposal.holding.reset();
   EXPECT_EQ(seen(anyDirection()).injection.finding.reason, "");
