@@ -27,7 +27,7 @@ constexpr double kThinZona = 1.2, kThickestOverlooked = 1.25;  // of the ooplasm
 constexpr double kConfirmedSize = 0.05;                        // of the diameter, that tells one line from the next
 // px, standard deviation of an ooplasm's mean diameter beside that of its points: its rim is not as the models'. Chosen
 // so that 95 % of rendered ones in focus are in their intervals.
-constexpr double kOoplasmModel = 0.2;
+constexpr double kOoplasmModel = 0.4;
 constexpr double kConfirmed = 0.006;  // of the diameter, standard deviation
 
 /// Which of several lines a border is, the second eye knows. Where that line is, is as sure as a fringe of it is wide.

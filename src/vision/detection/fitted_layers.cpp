@@ -21,7 +21,7 @@ constexpr double kMore = 0.04, kLeastOn = 0.5, kLeastNear = 0.4;  // shares of t
 constexpr double kSameRadius = 1;                                 // px, of two measurements of a radius
 constexpr double kClearOfRim = 3;                                 // px, of the zona's line from the ooplasm's rim
 constexpr double kSameSize = 0.01;                                // of the radius, from frame to frame
-constexpr double kInnerModel = 0.15;     // px, as kOoplasmModel of cell_detector.cpp, of a zona's inner border
+constexpr double kInnerModel = 0.25;     // px, as kOoplasmModel of cell_detector.cpp, of a zona's inner border
 constexpr double kMostDeparture = 0.05;  // of the radius, that the fit may be from the first borders
 
 double radiusOf(const Ellipse& ellipse) { return 0.5 * ellipse.meanDiameter(); }
