@@ -19,20 +19,20 @@ from cell_microinjection.msg import Hindrance, Readiness
 
 PATIENCE = 3  # s, for a session's answer; it tells twice a second
 WIDTH = 100
-LEVELS = {Hindrance.OK: "", Hindrance.WARN: "warning: ", Hindrance.ERROR: "error: "}
+LEVELS = {Hindrance.OK: '', Hindrance.WARN: 'warning: ', Hindrance.ERROR: 'error: '}
 
 
 def text_of(readiness):
     """The message as lines for a person."""
-    lines = ["the session is ready" if readiness.ready else "the session is not ready"]
+    lines = ['the session is ready' if readiness.ready else 'the session is not ready']
     for number, each in enumerate(readiness.hindrances, 1):
-        held = ", holds the needle" if each.holds else ""
-        lines.append(f"{number}. {each.node} ({each.status}{held}): {LEVELS.get(each.level, '')}{each.reason}")
-        see = f'see "{each.section}" in doc/guide/troubleshooting.md' if each.section else ""
-        remedy = f"{each.remedy} ({see})" if each.remedy and see else each.remedy or see
+        held = ', holds the needle' if each.holds else ''
+        lines.append(f'{number}. {each.node} ({each.status}{held}): {LEVELS.get(each.level, "")}{each.reason}')
+        see = f'see "{each.section}" in doc/guide/troubleshooting.md' if each.section else ''
+        remedy = f'{each.remedy} ({see})' if each.remedy and see else each.remedy or see
         if remedy:
-            lines += textwrap.wrap(remedy, WIDTH, initial_indent="     ", subsequent_indent="     ")
-    return "\n".join(lines)
+            lines += textwrap.wrap(remedy, WIDTH, initial_indent='     ', subsequent_indent='     ')
+    return '\n'.join(lines)
 
 
 def newest(queue):
@@ -81,5 +81,5 @@ def main():
         return 0
 
 
-if __name__ == "__main__":
+if __name__ == '__main__':
     sys.exit(main())

@@ -25,7 +25,8 @@ void PipetteDetection::hear(const Finding& second_eye) {
 void PipetteDetection::confirm() {
   const Eigen::Vector2d axis(std::cos(direction), std::sin(direction));
   if (!confirmed) confirmed = clearness;
-  if (which_end && finding.hasValues()) finding = Finding::found();
+  if (!which_end || !finding.hasValues()) return;
+  finding = Finding::found();
   covariance += std::pow(kConfirmed * half_width, 2) * axis * axis.transpose();
 }
 

@@ -27,7 +27,7 @@ struct PipetteDetection {
   void setCovariance(double along, double across);
   /// What a second eye has against it, found: nothing. What it doubts is not sure.
   void hear(const Finding& second_eye);
-  /// The edge is the end, as a second eye sees it: found, as exactly as that edge is wide.
+  /// The edge is the end, as a second eye sees it: one that was in doubt is found, as exactly as that edge is wide.
   void confirm();
   /// px, of a place from the end: along the axis towards the shaft, and across.
   cv::Point2d inAxes(const cv::Point2d& place) const;

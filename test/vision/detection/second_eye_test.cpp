@@ -80,6 +80,7 @@ TEST_F(SecondEyeTest, WhatBothSeeIsFound) {
   EXPECT_LT(cv::norm(view.injection.end - pixel(45e-6, 40e-6)), 0.5);
   ASSERT_TRUE(view.holding.finding.isFound()) << view.holding.finding.reason;
   EXPECT_LT(cv::norm(view.holding.end - pixel(0, -37e-6)), 1);
+  EXPECT_LT(view.holding.deviationAlong(), 0.2) << "it is sure by its own lips, and as exact as they are";
 }
 
 TEST_F(SecondEyeTest, WhatItDoesNotSeeIsNotClaimed) {
