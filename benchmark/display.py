@@ -2,7 +2,7 @@
 """A large surface in rviz, drawn in software, beside a live session: rates, processor time, and the 1 kHz loop meanwhile.
 
 A surface of 10,000 triangles with a moving dent is published 30 times a second to the display node, beside a live session
-at 1 kHz whose prepared cell is indented and left again and again. rviz draws what the display node makes of it on a
+at 1 kHz whose surrogate cell is indented and left again and again. rviz draws what the display node makes of it on a
 virtual display. Counted are the messages of the display node, the frames of rviz (Mesa's own count, GALLIUM_HUD) and the
 processor time of both; the periods of the cell simulator as in ./dev bench realtime, at first without any drawing.
 """
@@ -219,7 +219,7 @@ def run(arguments, folder):
     counts.mkdir()
     realtime.write_motion(motion, 2 * (arguments.seconds + realtime.SETTLE) + realtime.RVIZ_TIMEOUT)
     session = DemoSession(ROOT / 'launch' / 'session.launch', logs, {
-        'cell': arguments.cell, 'model': 'prepared', 'display.markers': 'false', 'hand.motion': motion,
+        'cell': arguments.cell, 'model': 'surrogate', 'display.markers': 'false', 'hand.motion': motion,
         'record.folder': folder / 'record', 'record.bag': 'false'})
     try:
         session.wait_ready()

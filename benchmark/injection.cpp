@@ -17,7 +17,7 @@
 #include "benchmark/common/detection_figures.h"
 #include "benchmark/common/injection_case.h"
 #include "benchmark/common/injection_rig.h"
-#include "benchmark/common/prepared_scene.h"
+#include "benchmark/common/surrogate_scene.h"
 
 namespace microinjection {
 namespace {
@@ -31,7 +31,7 @@ double known_to = 0;  ///< the same of the random cells; 0: nothing is expected
 
 struct Bench {
   Scene scene = loadScene(kScene);
-  std::shared_ptr<const SurrogateData> prepared = std::make_shared<const SurrogateData>(preparedScene(scene, kScene));
+  std::shared_ptr<const SurrogateData> prepared = std::make_shared<const SurrogateData>(surrogateScene(scene, kScene));
   ManipulatorGeometry geometry;
   SimulatedManipulatorConfig manipulator;
 

@@ -37,7 +37,7 @@ def parse_arguments():
     parser.add_argument('--out', type=Path, required=True, help='folder of latency.csv')
     parser.add_argument('--seconds', type=float, default=30, help='that are measured of each device (default 30)')
     parser.add_argument('--cell', default='mouse_oocyte_pipette', help='name in config/cells (default %(default)s)')
-    parser.add_argument('--model', default='prepared', choices=('prepared', 'live', 'auto'), help='default %(default)s')
+    parser.add_argument('--model', default='surrogate', choices=('surrogate', 'live', 'auto'), help='default %(default)s')
     parser.add_argument('--devices', default=','.join(HAPTIC), help='default %(default)s')
     arguments = parser.parse_args()
     arguments.devices = arguments.devices.split(',')
@@ -141,7 +141,7 @@ def rows_of_each(arguments):
 def main():
     arguments = parse_arguments()
     scene = ROOT / 'config' / 'cells' / f'{arguments.cell}.yaml'
-    if arguments.model == 'prepared' and not full_solution.prepare(scene):
+    if arguments.model == 'surrogate' and not full_solution.prepare(scene):
         sys.exit(f'latency: {scene} cannot be prepared, see above')
     arguments.out.mkdir(parents=True, exist_ok=True)
     try:

@@ -31,7 +31,7 @@ class LayersTable {
 
   std::string rows() {
     table_.add(
-        "trial,truth,believed,depth_m,noise_N,contact_known_m,core_modulus,shell_thickness,modulus_error,rival_"
+        "trial,truth,estimated,depth_m,noise_N,contact_known_m,core_modulus,shell_thickness,modulus_error,rival_"
         "advantage,verdict,"
         "lowest_modulus,highest_modulus,layers_known\n");
     for (int trial = 0; trial < options_.trials; ++trial) {
@@ -61,7 +61,7 @@ class LayersTable {
     int trial = 0;
     double depth = 0, noise = 0;  ///< m; over the sensor's
     double known = 0;             ///< m, standard deviation of the contact that is known; 0: it is not
-    bool layers = false;          ///< whether the believed cell has the layers of the truth; else it is homogeneous
+    bool layers = false;          ///< whether the assumed cell has the layers of the truth; else it is homogeneous
   };
 
   void fit(const Case& at, const DrawnCell& truth, const ForceCurve& curve) {
@@ -74,13 +74,13 @@ class LayersTable {
     IdentificationConfig config;
     config.intervals = false;
     config.rivals = std::make_shared<const std::vector<RivalCell>>(rivalCells({homogeneous_, zona_}, known));
-    const char *name = layered ? "layered" : "homogeneous", *believed = layers ? "layered" : "homogeneous";
+    const char *name = layered ? "layered" : "homogeneous", *estimated = layers ? "layered" : "homogeneous";
     if (at.known > 0) {
       config.contact = contact_ + at.known * std::normal_distribution<double>()(random_);
       config.contact_deviation = at.known;
     }
     char head[120], row[160];
-    std::snprintf(head, sizeof(head), "%d,%s,%s,%.3g,%.3g,%.3g,%.3g,%.3g,", at.trial, name, believed, at.depth,
+    std::snprintf(head, sizeof(head), "%d,%s,%s,%.3g,%.3g,%.3g,%.3g,%.3g,", at.trial, name, estimated, at.depth,
                   at.noise * kNoise, at.known, core, thickness);
     try {
       const auto law = std::make_shared<FamilyLaw>(layers ? zona_ : homogeneous_, known, std::vector<std::string>{});

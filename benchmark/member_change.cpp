@@ -41,7 +41,7 @@ double threadTime() {
 ChosenCellModel serve() {
   CellModelConfig config;
   config.families = MICROINJECTION_SOURCE_DIR "/config/families";
-  ChosenCellModel served = makeCellModel(loadScene(kScene), "prepared", config, kScene);
+  ChosenCellModel served = makeCellModel(loadScene(kScene), "surrogate", config, kScene);
   if (!served.change) throw std::runtime_error("no family serves " + std::string(kScene));
   return served;
 }

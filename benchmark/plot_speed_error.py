@@ -21,7 +21,7 @@ MODELS = {
     'neo_hookean_disc spatial': ('{}, space (disc)', None, '--', 'P'),
     'hemisphere_sticking axisymmetric': ('{}, section (hemisphere)', '#00a5b5', '-', 'h'),
     'hemisphere_sticking spatial': ('{}, space (hemisphere)', '#00a5b5', '--', 'X'),
-    'hemisphere_sticking prepared': ('prepared cell (hemisphere)', '#d8a300', '', '*'),
+    'hemisphere_sticking prepared': ('surrogate cell (hemisphere)', '#d8a300', '', '*'),
     'hemisphere_sticking family': ('cell of a family (hemisphere)', '#8a5a00', '', 'P'),
 }
 

@@ -4,7 +4,7 @@
 A period is the time from one step of the cell simulator to its next, measured in the node: a step follows the needle's
 pose through the whole chain from the hand, so that what any node of the chain is late by is in it. It is late by what it
 has more than 1 ms. The bare loop sleeps for 1 ms at a time in the session recorder's process, in real time (SCHED_RR) as
-the chain's nodes are, and shows what the machine allows. The prepared cell is indented and left again and again; rviz
+the chain's nodes are, and shows what the machine allows. The surrogate cell is indented and left again and again; rviz
 draws it, with the operator's console where one is named. Also told: the resident memory of the cell simulator at begin
 and end, and the processor time of the thread in which rviz draws and the console works.
 """
@@ -40,7 +40,7 @@ def parse_arguments():
     parser.add_argument('--out', type=Path, required=True, help='folder of realtime.csv')
     parser.add_argument('--seconds', type=float, default=60, help='that are measured (default 60)')
     parser.add_argument('--cell', default='mouse_oocyte_pipette', help='name in config/cells (default %(default)s)')
-    parser.add_argument('--model', default='prepared', choices=('prepared', 'live', 'auto'), help='default %(default)s')
+    parser.add_argument('--model', default='surrogate', choices=('surrogate', 'live', 'auto'), help='default %(default)s')
     parser.add_argument('--console', default='', help="rviz with the operator's console, name in config/console")
     parser.add_argument('--rate', type=int, default=2, help='Hz, of the scene in rviz on a virtual display (default 2)')
     parser.add_argument('--freeze', action='store_true', help='rviz is stopped (SIGSTOP) while it is measured')
@@ -194,7 +194,7 @@ def report(measured, memory, share, shares):
 def main():
     arguments = parse_arguments()
     scene = ROOT / 'config' / 'cells' / f'{arguments.cell}.yaml'
-    if arguments.model == 'prepared' and not full_solution.prepare(scene):
+    if arguments.model == 'surrogate' and not full_solution.prepare(scene):
         sys.exit(f'realtime: {scene} cannot be prepared, see above')
     with tempfile.TemporaryDirectory() as folder:
         try:

@@ -60,7 +60,7 @@ struct ClassCounts {
 };
 
 void renderedRows(Segmenter& segmenter) {
-  std::map<std::string, ClassCounts> looks;
+  std::map<std::string, ClassCounts> modes;
   TrainingImages source;
   for (std::uint64_t seed = first_seed; seed < first_seed + static_cast<std::uint64_t>(images); ++seed) {
     const TrainingImage image = source.make(seed);
@@ -68,11 +68,12 @@ void renderedRows(Segmenter& segmenter) {
     if (!frame.refusal().empty()) continue;
     const cv::Mat label = workingLabel(image.label, WorkingImage(frame.grey()));
     const cv::Mat classes = segmenter.segment(frame).classes();
-    for (const std::string& look : {std::string("all looks"), image.look}) looks[look].add(label, classes);
+    for (const std::string& mode : {std::string("all modes"), std::string(toText(image.contrast_mode))})
+      modes[mode].add(label, classes);
   }
-  for (const auto& [look, counts] : looks)
+  for (const auto& [mode, counts] : modes)
     for (std::size_t i = 0; i < kPixelClasses; ++i)
-      take("rendered," + look + "," + kPixelClassNames[i] + "," +
+      take("rendered," + mode + "," + kPixelClassNames[i] + "," +
            number(2 * counts.both[i] / (counts.truth[i] + counts.said[i]), "%.3f") + ",,,\n");
 }
 

@@ -7,7 +7,7 @@
 
 #include "benchmark/bench_main.h"
 #include "benchmark/common/stream_estimates.h"
-#include "rig/sensor/force_sensor.h"
+#include "hardware/sensor/force_sensor.h"
 
 namespace microinjection {
 namespace {

@@ -16,8 +16,8 @@
 #include "benchmark/common/call_times.h"
 #include "benchmark/common/forked_case.h"
 #include "benchmark/common/paper_mesh.h"
-#include "benchmark/common/prepared_scene.h"
 #include "benchmark/common/reference_scenes.h"
+#include "benchmark/common/surrogate_scene.h"
 #include "cell/family/family_cell.h"
 #include "cell/mechanics/explicit_step.h"
 #include "cell/model/cell_problem.h"
@@ -275,7 +275,7 @@ std::string table() {
     for (int n : {4, 9, 16, 26}) table.add([&] { return kernel(n, set, set == sets.back()); });
   }
   table.add([] {
-    const auto cell = std::make_shared<const SurrogateData>(preparedScene(loadScene(kPreparedScene), kPreparedScene));
+    const auto cell = std::make_shared<const SurrogateData>(surrogateScene(loadScene(kPreparedScene), kPreparedScene));
     return prepared(referenceScene("hemisphere_sticking"), " prepared", cell);
   });
   table.add([] {

@@ -17,8 +17,8 @@
 #include "benchmark/bench_main.h"
 #include "benchmark/common/printed_table.h"
 #include "cell/choice/make_cell_model.h"
+#include "hardware/sensor/force_sensor.h"
 #include "operation/control/injection_controller.h"
-#include "rig/sensor/force_sensor.h"
 #include "session/session_plan.h"
 
 namespace microinjection {
@@ -72,7 +72,7 @@ class WitnessedCell {
   std::unique_ptr<CellModel> model(const std::string& path) const {
     CellModelConfig config;
     config.families = MICROINJECTION_SOURCE_DIR "/config/families";
-    return makeCellModel(scene_, "prepared", config, path).cell;
+    return makeCellModel(scene_, "surrogate", config, path).cell;
   }
   bool membraneHolds(const CellModel& cell, double push) const {
     if (scene_.cell.puncture.layers.empty() || !cell.contact()) return true;

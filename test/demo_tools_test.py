@@ -25,7 +25,7 @@ class TrainingPlotTest(InFolder):
     COLUMNS = [column for column, *_ in plot_training.MEASURES + plot_training.SHARES]
 
     def history(self, *operators):
-        rows = [','.join(['operator', 'session', 'outcome', 'score'] + self.COLUMNS)]
+        rows = [','.join(['trainee', 'session', 'outcome', 'score'] + self.COLUMNS)]
         rows += [','.join([name, str(number), 'aborted' if number % 3 == 2 else 'complete', '50'] +
                           ['1'] * len(self.COLUMNS)) for number, name in enumerate(operators)]
         return self.write('history.csv', '\n'.join(rows) + '\n')
@@ -129,7 +129,7 @@ class SummaryTest(InFolder):
              ' interval_median_ms: 1.0, interval_p99_ms: 1.5}\n')
 
     def test_training_says_points_or_why_there_are_none(self):
-        told = ('operator: "ada"\noutcome: complete\nreason: ""\nscore: 87.4\nmeasures:\n'
+        told = ('trainee: "ada"\noutcome: complete\nreason: ""\nscore: 87.4\nmeasures:\n'
                 '  peak_force_N: {value: 1.5e-6, reference: 1e-06, points: 25, of: 25}\n')
         text = demo_summary.training(self.write('t.yaml', told))
         self.assertIn('Training of ada: 87 of 100 points', text)

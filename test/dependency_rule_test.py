@@ -139,14 +139,14 @@ class TheRule(unittest.TestCase):
     CMAKE = ('function(microinjection_room name)\nendfunction()\n# microinjection_room(cellar)\n'
              'microinjection_room(base LINK yaml-cpp)\nmicroinjection_room(cell/mesh DEPENDS base LINK gmsh)\n'
              'microinjection_room(cell/model\n  DEPENDS cell/mesh\n  LINK Threads::Threads)\n'
-             'microinjection_room(rig/sensor DEPENDS base)\n')
+             'microinjection_room(hardware/sensor DEPENDS base)\n')
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.source = Path(folder.name) / 'src'
         self.write('CMakeLists.txt', self.CMAKE)
-        for name in ('base/a.h', 'cell/mesh/a.h', 'cell/model/a.h', 'rig/sensor/a.h', 'nodes/a.h'):
+        for name in ('base/a.h', 'cell/mesh/a.h', 'cell/model/a.h', 'hardware/sensor/a.h', 'nodes/a.h'):
             self.write(name, '#include <vector>\n')
 
     def write(self, name, text):
@@ -165,13 +165,13 @@ class TheRule(unittest.TestCase):
         self.write('cell/model/b.cpp', '#include "cell/model/a.h"\n\n#include <Eigen/Core>\n#include "cell/mesh/a.h"\n#include "base/a.h"\n')
         self.write('nodes/b.cpp', '#include "nodes/a.h"\n#include <ros/ros.h>\n'
                    '#include "cell/model/a.h"\n#include "cell_microinjection/CellState.h"\n')
-        self.write('commands/b.cpp', '#include "cell/model/a.h"\n#include "rig/sensor/a.h"\n')
+        self.write('commands/b.cpp', '#include "cell/model/a.h"\n#include "hardware/sensor/a.h"\n')
         self.assertEqual(check_source(self.source), [])
 
     def test_reads_what_each_room_stands_on(self):
         rooms = read_rooms(self.CMAKE)
         self.assertEqual(rooms['cell/model'], {'cell/model', 'cell/mesh', 'base'})
-        self.assertEqual(rooms['rig/sensor'], {'rig/sensor', 'base'})
+        self.assertEqual(rooms['hardware/sensor'], {'hardware/sensor', 'base'})
         self.assertNotIn('cellar', rooms)
 
     def test_refuses_a_dependency_on_a_room_above(self):
@@ -179,14 +179,14 @@ class TheRule(unittest.TestCase):
             read_rooms('microinjection_room(base DEPENDS mesh)\nmicroinjection_room(mesh)\n')
 
     def test_refuses_a_dependency_on_another_wing(self):
-        with self.assertRaisesRegex(ValueError, 'rig/sensor depends on cell/mesh, which is in another wing'):
-            read_rooms('microinjection_room(cell/mesh)\nmicroinjection_room(rig/sensor DEPENDS cell/mesh)\n')
+        with self.assertRaisesRegex(ValueError, 'hardware/sensor depends on cell/mesh, which is in another wing'):
+            read_rooms('microinjection_room(cell/mesh)\nmicroinjection_room(hardware/sensor DEPENDS cell/mesh)\n')
 
     def test_reports_an_include_of_a_room_above(self):
         self.assert_reported('base/b.cpp', '#include "cell/mesh/a.h"', 'room base may include only base')
 
     def test_reports_an_include_of_a_room_beside(self):
-        self.assert_reported('rig/sensor/b.h', '#include "cell/mesh/a.h"', 'room rig/sensor may include only base, rig/sensor')
+        self.assert_reported('hardware/sensor/b.h', '#include "cell/mesh/a.h"', 'room hardware/sensor may include only base, hardware/sensor')
 
     def test_reports_a_room_in_angle_brackets_and_spaces(self):
         self.assert_reported('base/b.h', '  #  include <cell/model/a.h>', 'room base may include only base')

@@ -157,7 +157,7 @@ class Checker(LinkChecker):
         if name == 'cell':
             good = f'config/cells/{value}.yaml' in self.project.files
         elif name == 'haptic':
-            good = f'config/haptic/{value}.yaml' in self.project.files or value in ('operator', 'none')
+            good = f'config/haptic/{value}.yaml' in self.project.files or value in ('virtual_hand', 'none')
         elif name == 'session':
             good = f'config/sessions/{value}.yaml' in self.project.files
         elif name in ('record', 'only'):

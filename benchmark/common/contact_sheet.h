@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "benchmark/common/micrographs.h"
-#include "vision/detection/specimen_tracker.h"
+#include "vision/track/specimen_tracker.h"
 
 namespace microinjection {
 

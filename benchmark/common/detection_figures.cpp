@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <vector>
 
+#include "hardware/sensor/force_sensor.h"
 #include "operation/control/needle_monitor.h"
-#include "rig/sensor/force_sensor.h"
 
 namespace microinjection {
 namespace {

@@ -51,7 +51,7 @@ DrawnCell drawCell(const FamilyData& data, double radius, double deep, std::mt19
     Eigen::VectorXd coordinates(family.dimension());
     for (double& x : coordinates) x = uniform(-1, 1, random);
     const Scene member = family.member(coordinates);
-    const Preparation plan = planMember(family, member);
+    const SurrogatePlan plan = planMember(family, member);
     DrawnCell cell;
     cell.length = plan.range.axis_depth * radius;
     if (cell.length < deep) continue;

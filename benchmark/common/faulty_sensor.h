@@ -5,7 +5,7 @@
 #include <random>
 #include <string>
 
-#include "rig/sensor/force_sensor.h"
+#include "hardware/sensor/force_sensor.h"
 
 namespace microinjection {
 

@@ -82,7 +82,7 @@ MarkedImage inverted(const MarkedImage& original) {
   cv::Mat changed;
   asFraction(original.image).convertTo(changed, CV_32F, -1, 1);
   MarkedImage result = withGrey(original, changed);
-  result.look = "unknown";  // there is no microscope that makes it
+  result.contrast_mode = ContrastMode::kUnknown;  // there is no microscope that makes it
   return result;
 }
 

@@ -23,11 +23,11 @@ struct InjectionCase {
 /// friction of the shaft of up to 0.3 of the zona's strength.
 InjectionCase randomInjectionCase(int seed);
 
-/// What an operator sets for a kind of cell: its diameter is seen, its modulus is believed, the
+/// What an operator sets for a kind of cell: its diameter is seen, its modulus is assumed, the
 /// layers are known.
 InjectionControllerConfig injectionSettings(const InjectionCase& of);
 
-/// What a twin expects of the zona, which knows its strength with `deviation` (of its logarithm, 0: nothing
+/// What an estimator expects of the zona, which knows its strength with `deviation` (of its logarithm, 0: nothing
 /// is known). The depth is that of all cells. Empty when nothing is known.
 std::optional<ExpectedPuncture> expectedPuncture(const InjectionCase& of, double deviation);
 

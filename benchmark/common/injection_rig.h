@@ -4,11 +4,11 @@
 #include <optional>
 
 #include "benchmark/common/scaled_cell.h"
+#include "hardware/injector/injector_model.h"
+#include "hardware/manipulator/micromanipulator.h"
+#include "hardware/manipulator/simulated_manipulator.h"
+#include "hardware/sensor/force_sensor.h"
 #include "operation/control/injection_controller.h"
-#include "rig/injector/injector_model.h"
-#include "rig/manipulator/micromanipulator.h"
-#include "rig/manipulator/simulated_manipulator.h"
-#include "rig/sensor/force_sensor.h"
 
 namespace microinjection {
 

@@ -3,6 +3,7 @@
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
+#include "vision/frame/contrast_mode.h"
 
 namespace microinjection {
 
@@ -22,10 +23,10 @@ struct MarkedImage {
   cv::Mat image;
   std::vector<ImageMark> marks;
   bool has_cell = false, has_needle = false, has_holding = false;
-  std::string look = "unknown";  ///< as CellDetectorConfig::look
-  double needle = 0;             ///< rad, from the tip towards the shaft, from x towards y
-  double holding = 0;            ///< rad, from the mouth towards the shaft
-  double scale = 1;              ///< px, for a pixel of the image as it was taken
+  ContrastMode contrast_mode = ContrastMode::kUnknown;
+  double needle = 0;   ///< rad, from the tip towards the shaft, from x towards y
+  double holding = 0;  ///< rad, from the mouth towards the shaft
+  double scale = 1;    ///< px, for a pixel of the image as it was taken
 };
 
 }  // namespace microinjection

@@ -50,7 +50,9 @@ void describe(MarkedImage& image) {
   image.has_needle = isOf(name, "holypipette/") || isOf(name, "autopatcher_ig/");
   image.has_cell = !image.has_needle;
   if (isOf(name, "autooocyte/")) image.has_cell = empty.count(name.substr(name.rfind('_') + 1)) == 0;
-  image.look = image.has_holding ? "phase" : isOf(name, "autopatcher_ig/") ? "dic" : "bright_field";
+  image.contrast_mode = image.has_holding               ? ContrastMode::kPhase
+                        : isOf(name, "autopatcher_ig/") ? ContrastMode::kDic
+                                                        : ContrastMode::kBrightField;
   image.needle = isOf(name, "autopatcher_ig/") ? 160 * M_PI / 180 : 0;
   image.holding = image.needle + M_PI;
   if (image.has_holding) image.holding = name == "vampy/test.png" ? M_PI : 0;

@@ -22,7 +22,7 @@ struct PunctureScore {
 /// Draws a failure law of `cell` with a limit of force, depth or strain, and how much stronger this cell's
 /// membrane is than the law says: a factor, log-normal with the standard deviation `strength`, which
 /// the prediction knows, too. A needle at 20 um/s and the virtual force sensor then indent the cell to
-/// half of the puncture's depth; the online twin's estimate there is what predicts. The twin's prior is
+/// half of the puncture's depth; the cell estimator's estimate there is what predicts. The estimator's prior is
 /// off by up to a factor of 2.7.
 PunctureScore runPunctureTrial(const DrawnCell& cell, const std::shared_ptr<const FamilyData>& family, double strength,
                                int seed, std::mt19937& random);

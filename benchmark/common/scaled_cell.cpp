@@ -7,7 +7,7 @@
 namespace microinjection {
 namespace {
 
-/// The same membranes on the prepared cell: lengths are smaller by `length`, forces by `force`.
+/// The same membranes on the surrogate cell: lengths are smaller by `length`, forces by `force`.
 PunctureConfig onPrepared(PunctureConfig puncture, double length, double force) {
   for (auto& layer : puncture.layers) {
     layer.force /= force;

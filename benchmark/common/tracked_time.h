@@ -5,7 +5,7 @@
 
 #include "base/cpu_time.h"
 #include "base/median.h"
-#include "vision/detection/specimen_tracker.h"
+#include "vision/track/specimen_tracker.h"
 
 namespace microinjection {
 

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "benchmark/common/vision_row.h"
-#include "vision/detection/specimen_tracker.h"
 #include "vision/microscope/microscope.h"
 #include "vision/microscope/microscope_config.h"
 #include "vision/microscope/scene_draw.h"
+#include "vision/track/specimen_tracker.h"
 
 namespace microinjection {
 

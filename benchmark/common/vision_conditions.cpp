@@ -33,9 +33,9 @@ std::vector<VisionCondition> visionConditions() {
   SceneDrawConfig debris = usual();
   debris.dust = 25;
   all.push_back(condition("debris", debris));
-  for (const char* look : {"dic", "phase"}) {
-    all.push_back(condition(look, usual()));
-    all.back().microscope.look.kind = look;
+  for (const ContrastMode mode : {ContrastMode::kDic, ContrastMode::kPhase}) {
+    all.push_back(condition(toText(mode), usual()));
+    all.back().microscope.contrast.mode = mode;
   }
   all.push_back(condition("compressed", usual()));
   all.back().microscope.sensor.jpeg_quality = 50;

@@ -167,7 +167,7 @@ SpecimenTrackerConfig trackerConfig(const MarkedImage& image, RealSetup setup) {
   ConfigReader nothing(YAML::Node(YAML::NodeType::Map), "");
   SpecimenTrackerConfig config = SpecimenTrackerConfig::read(nothing);
   if (setup == RealSetup::kDefault) return config;
-  config.cell.look = image.look;
+  config.cell.contrast_mode = image.contrast_mode;
   config.injection.any_direction = config.holding.any_direction = false;
   config.injection.direction = image.needle;
   config.holding.direction = image.holding;

@@ -7,7 +7,7 @@
 #include "benchmark/common/marked_image.h"
 #include "benchmark/common/micrographs.h"
 #include "benchmark/common/vision_row.h"
-#include "vision/detection/specimen_tracker.h"
+#include "vision/track/specimen_tracker.h"
 
 namespace microinjection {
 

@@ -7,9 +7,9 @@
 #include "benchmark/common/stated_interval.h"
 #include "benchmark/common/tracked_time.h"
 #include "benchmark/common/vision_cases.h"
-#include "vision/detection/frame_search.h"
-#include "vision/detection/specimen_tracker.h"
 #include "vision/microscope/microscope.h"
+#include "vision/track/frame_search.h"
+#include "vision/track/specimen_tracker.h"
 
 namespace microinjection {
 namespace {
@@ -208,7 +208,7 @@ SpecimenTrackerConfig trackerConfig(const VisionCondition& condition) {
   SpecimenTrackerConfig config = SpecimenTrackerConfig::read(nothing);
   config.cell.smallest_diameter = 200;
   config.cell.largest_diameter = 640;
-  config.cell.look = condition.microscope.look.kind;
+  config.cell.contrast_mode = condition.microscope.contrast.mode;
   const auto direction = [&](double y) {
     const Eigen::Vector2d shaft = condition.microscope.camera.imageDirection({0, y});
     return std::atan2(shaft.y(), shaft.x());

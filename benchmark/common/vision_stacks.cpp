@@ -4,8 +4,8 @@
 #include "benchmark/common/vision_real.h"
 #include "vision/calibration/statistics.h"
 #include "vision/calibration/tip_focus.h"
-#include "vision/detection/tip_sharpness.h"
 #include "vision/measurement/core_sharpness.h"
+#include "vision/pipette/tip_sharpness.h"
 
 namespace microinjection {
 namespace {

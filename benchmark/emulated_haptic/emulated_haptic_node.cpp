@@ -36,7 +36,7 @@ EmulatedHapticNode::EmulatedHapticNode(Bus& bus)
           parameters_.kind, cycle_,
           [this](const auto& force, const ros::Time& received) { meter_.addForce(force, received); })),
       force_(cycle_.output<geometry_msgs::WrenchStamped>("emulated_haptic/measured_cf")),
-      phase_(cycle_.output<cell_microinjection::StringStamped>("operator/phase", true)) {
+      phase_(cycle_.output<cell_microinjection::StringStamped>("virtual_hand/phase", true)) {
   at_.position = hand_.position();
   report("device to bridge", meter_.atBridge());
   report("device to device", meter_.atDevice());

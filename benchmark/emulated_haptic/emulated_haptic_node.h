@@ -23,7 +23,7 @@ namespace microinjection {
 /// Topics of the kind, see emulated_driver.h, and
 /// In:  /haptic/servo_cf, /needle/setpoint_trace, /haptic/force_trace
 /// Out: /emulated_haptic/measured_cf (WrenchStamped, N on the hand, in the view's axes),
-///      /operator/phase (StringStamped, latched, on change: the motion's phases, then done)
+///      /virtual_hand/phase (StringStamped, latched, on change: the motion's phases, then done)
 ///
 /// Parameters: see kHelp
 class EmulatedHapticNode {

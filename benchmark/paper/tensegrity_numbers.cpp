@@ -8,7 +8,7 @@
 #include "base/cpu_time.h"
 #include "benchmark/common/call_times.h"
 #include "cell/mechanics/largest_frequency.h"
-#include "cell/model/online_cell_model.h"
+#include "cell/model/live_cell_model.h"
 #include "cell/model/tensegrity_cell.h"
 
 namespace microinjection {
@@ -48,10 +48,10 @@ double stableStep(const TensegrityStructure& structure) {
 template <typename Add>
 void serve(const std::shared_ptr<const TensegrityCell>& cell, const Add& add) {
   constexpr int kSteps = 4000;
-  OnlineCellModelConfig config;
+  LiveCellModelConfig config;
   config.fixed_period = true;
   config.solution_period = 0.1;
-  OnlineCellModel tracker(cell, config);
+  LiveCellModel tracker(cell, config);
   const Eigen::Vector3d end = cell->structure().geometry().ends[topEnd(cell->structure().geometry())];
   std::vector<double> times, solutions;
   int invalid = 0;

@@ -11,7 +11,7 @@
 #include "base/atomic_file.h"
 #include "benchmark/common/call_times.h"
 #include "benchmark/common/paper_mesh.h"
-#include "benchmark/common/prepared_scene.h"
+#include "benchmark/common/surrogate_scene.h"
 #include "benchmark/peers/peer_case.h"
 #include "benchmark/peers/peer_result.h"
 #include "cell/family/family_cell.h"
@@ -142,14 +142,14 @@ void solveExplicit(const PeerCase& peer_case, PeerResult& result) {
 
 std::shared_ptr<const SurrogateData> surrogate(const std::string& model, const Scene& scene, const std::string& file) {
   if (!scene.needle.tip.rounded()) throw Declined("rounded tips only");
-  if (model == "prepared") return std::make_shared<const SurrogateData>(preparedScene(scene, file));
+  if (model == "surrogate") return std::make_shared<const SurrogateData>(surrogateScene(scene, file));
   std::string reason;
   const auto member = findFamilyCell(kFamilies, scene, reason);
   if (!member) throw Declined(reason.empty() ? "no family has this cell" : reason);
   return member->data;
 }
 
-/// The table of a prepared cell or of a family's member: it has no mesh of its inside.
+/// The table of a surrogate cell or of a family's member: it has no mesh of its inside.
 void solveSurrogate(const PeerCase& peer_case, const Scene& scene, const std::string& model, PeerResult& result) {
   result.model = model;
   result.element = "energy";
@@ -180,12 +180,12 @@ PeerResult solve(const std::string& model, const PeerCase& peer_case) {
   try {
     if (model == "explicit") {
       solveExplicit(peer_case, result);
-    } else if (model == "prepared" || model == "family") {
+    } else if (model == "surrogate" || model == "family") {
       solveSurrogate(peer_case, scene, model, result);
     } else if (std::find(elements.begin(), elements.end(), model) != elements.end()) {
       solveElements(peer_case, scene, model, result);
     } else {
-      throw std::runtime_error("MODEL must be an element (p1, p2, p2_p0, ...), explicit, family or prepared");
+      throw std::runtime_error("MODEL must be an element (p1, p2, p2_p0, ...), explicit, family or surrogate");
     }
   } catch (const Declined& reason) {
     result.declined = reason.what();

@@ -35,7 +35,7 @@ def programs(folder):
         Program('ours p2', f'{ours} p2', (EQUAL,)),
         Program('ours explicit', f'{ours} explicit', (EQUAL,)),
         Program('ours family', f'{ours} family', (EQUAL,)),
-        Program('ours prepared', f'{ours} prepared', (EQUAL,), preparation=(folder / 'prepare', '--scene')),
+        Program('ours surrogate', f'{ours} surrogate', (EQUAL,), preparation=(folder / 'prepare', '--scene')),
         Program('Bullet', f'{bullet} 1', (EQUAL, STABILITY), no_bullet),
         Program('Bullet, equilibrium', f'{bullet} 5', (EQUAL, STABILITY), no_bullet),
         Program('CalculiX', python('calculix_cell.py'), (CONVERGED, EQUAL, STABILITY), no_calculix),

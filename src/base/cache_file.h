@@ -5,12 +5,12 @@
 
 namespace microinjection {
 
-/// cell_microinjection/`below` in $XDG_CACHE_HOME or else ~/.cache; empty when neither variable is
-/// set.
+/// cell_microinjection/`below` in $XDG_CACHE_HOME or else ~/.cache; empty when neither variable is set. A relative
+/// $XDG_CACHE_HOME counts as not set, as the XDG base directory specification has it.
 std::string cacheDirectory(const std::string& below);
 
-/// 64-bit hash as hexadecimal text. It names files and detects damage. It does not protect against
-/// malice.
+/// 64-bit hash (FNV-1a) as hexadecimal text, the same on every machine. It names files and detects damage. It does not
+/// protect against malice, and a cache in the user's own folder need not do so.
 std::string contentHash(const std::string& text);
 
 enum class CacheState {
@@ -22,7 +22,9 @@ enum class CacheState {
   kOther        ///< valid, but of another description
 };
 
-/// Content of a cache file, or the reason why it cannot be used.
+/// Content of a cache file, or the reason why it cannot be used. Reading does not throw, because a file that is
+/// missing, damaged or of another version is nothing exceptional in a cache: the caller makes the content anew, or
+/// tells the user how to, and decides by `state`.
 template <typename Content>
 struct CacheRead {
   std::optional<Content> content;  ///< of kRead only
@@ -44,12 +46,22 @@ CacheRead<Content> damagedCache(const std::string& path, const std::string& reas
   return {std::nullopt, CacheState::kDamaged, path + ": is damaged: " + reason};
 }
 
-/// Stores `body` such that readCacheFile returns it for the same `description` (one line of text)
-/// only. Safe with concurrent readers and writers of the file. Throws WriteError as
-/// replaceFileAtomically does.
+/// Stores `body` such that readCacheFile returns it for the same `description` only:
+///
+///     DESCRIPTION checksum HASH    one line; HASH: contentHash(BODY)
+///     BODY                         any bytes
+///
+/// The description says what the body was computed from, with the version of the computation. It is in the file in
+/// full, although most file names have its hash already, so that a reader can tell a file of another version, which is
+/// to be made anew, from a damaged one, and so that two descriptions of one hash are never confused. The checksum finds
+/// what the atomic replacement cannot prevent, such as a copy that was cut short.
+///
+/// Safe with concurrent readers and writers of the file. Throws WriteError as replaceFileAtomically does.
+/// @pre `description` has no line break: the file would read as damaged
 void writeCacheFile(const std::string& path, const std::string& description, const std::string& body);
 
-/// The body that was stored for `description`. Reads regular files only and never blocks.
+/// The body that was stored for `description`. Reads regular files only and never blocks, also where a pipe lies at
+/// `path`. The whole file is read into memory.
 CacheRead<std::string> readCacheFile(const std::string& path, const std::string& description);
 
 }  // namespace microinjection

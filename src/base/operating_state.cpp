@@ -21,6 +21,13 @@ const char* toText(OperatingState state) { return kStateNames[static_cast<std::s
 
 const char* toText(StateCommand command) { return kCommandNames[static_cast<std::size_t>(command)]; }
 
+std::optional<OperatingState> operatingStateOf(const std::string& text) {
+  for (const OperatingState state : kStates) {
+    if (text == toText(state)) return state;
+  }
+  return std::nullopt;
+}
+
 std::optional<StateCommand> stateCommandOf(const std::string& text) {
   for (const StateCommand command : kCommands) {
     if (text == toText(command)) return command;

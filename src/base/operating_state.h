@@ -13,7 +13,8 @@ enum class StateCommand { kEnable, kDisable, kPause, kResume, kHome, kUnhome };
 /// Text on the topics operating_state and state_command: "ENABLED", ...; "enable", ...
 const char* toText(OperatingState state);
 const char* toText(StateCommand command);
-/// The command of that text; empty when there is none.
+/// The state, the command of that text; empty when there is none.
+std::optional<OperatingState> operatingStateOf(const std::string& text);
 std::optional<StateCommand> stateCommandOf(const std::string& text);
 
 /// The state after a command; empty when the command is invalid, and the state stays.

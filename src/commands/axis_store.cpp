@@ -11,7 +11,7 @@
 namespace microinjection {
 
 AxisStore::AxisStore(const Family& family) : family_(family) {
-  const std::string cache = cacheDirectory("prepared");
+  const std::string cache = cacheDirectory("surrogates");
   if (cache.empty()) throw ConfigError("neither XDG_CACHE_HOME nor HOME is set: no folder for the data");
   folder_ = cache + "/" + contentHash(family.description() + " axis");
 }

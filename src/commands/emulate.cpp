@@ -15,10 +15,12 @@
 #include <string>
 #include <vector>
 
+#include "base/command_line.h"
 #include "base/errors.h"
+#include "base/exit_status.h"
 #include "base/standard_output.h"
-#include "rig/devices/rig_registry.h"
-#include "rig/serial/emulator_host.h"
+#include "hardware/devices/driver_registry.h"
+#include "hardware/serial/emulator_host.h"
 
 namespace microinjection {
 namespace {
@@ -48,7 +50,7 @@ Exit status: 0 interrupted; 2 bad usage, a terminal or link that cannot be made,
 volatile std::sig_atomic_t interrupted = 0;
 
 struct Arguments {
-  const Rig* rig = nullptr;
+  const DriverEntry* rig = nullptr;
   std::string link;
   int baud = 0;  // bit/s
   std::vector<Fault> faults;
@@ -59,7 +61,7 @@ struct Arguments {
 
 std::string rigNames() {
   std::string names;
-  for (const Rig& rig : rigs()) names += (names.empty() ? "" : " or ") + rig.name;
+  for (const DriverEntry& rig : driverEntries()) names += (names.empty() ? "" : " or ") + rig.name;
   return names;
 }
 
@@ -87,20 +89,9 @@ std::optional<Arguments> parse(int argc, char** argv) {
       "firmware version that the device reports, e.g. 6.28");
   add("verbose,v", po::bool_switch(&arguments.verbose), "prints the bytes received (>) and sent (<)");
   po::variables_map given;
-  try {
-    po::positional_options_description first;
-    po::store(po::command_line_parser(own_arguments).options(options).positional(first.add("rig", 1)).run(), given);
-    po::notify(given);
-  } catch (const po::error& error) {
-    throw ConfigError(error.what());
-  }
-  if (given.count("help")) {
-    std::cout << kHelp << '\n' << options;
-    flushStandardOutput();
-    return std::nullopt;
-  }
+  if (!readCommandLine(own_arguments, options, std::string(kHelp) + '\n', given, "rig")) return std::nullopt;
   if (rig.empty()) throw ConfigError("RIG is missing: must be " + rigNames());
-  arguments.rig = &findRig(rig);
+  arguments.rig = &findDriver(rig);
   if (!given.count("link")) arguments.link = "/tmp/emulated_" + rig;
   if (!given.count("baud")) arguments.baud = arguments.rig->default_baud;
   if (arguments.baud <= 0) throw ConfigError("--baud = " + std::to_string(arguments.baud) + ": must be > 0 bit/s");
@@ -200,7 +191,7 @@ void runInRealTime() {
 }
 
 void serve(const Arguments& arguments) {
-  const Rig& rig = *arguments.rig;
+  const DriverEntry& rig = *arguments.rig;
   const std::shared_ptr<ManipulatorEmulator> device = rig.make_emulator();
   for (const Fault& fault : arguments.faults) device->inject(fault);
   if (!arguments.firmware.empty()) device->setFirmware(arguments.firmware);
@@ -236,15 +227,12 @@ void serve(const Arguments& arguments) {
 
 int main(int argc, char** argv) {
   using namespace microinjection;
-  try {
+  return runProgram("emulate", [&] {
     const std::optional<Arguments> arguments = parse(argc, argv);
-    if (!arguments) return 0;
+    if (!arguments) return kDone;
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { interrupted = 1; });
     runInRealTime();
     serve(*arguments);
-    return 0;
-  } catch (const std::exception& exception) {
-    std::cerr << "emulate: " << exception.what() << '\n';
-    return 2;
-  }
+    return kDone;
+  });
 }

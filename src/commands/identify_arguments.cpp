@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <iostream>
 
+#include "base/command_line.h"
 #include "base/config_errors.h"
 #include "base/errors.h"
 #include "base/output_files.h"
@@ -149,13 +150,7 @@ std::optional<IdentifyArguments> parseIdentifyArguments(int argc, char** argv) {
   add("csv", po::value(&arguments.csv), "CSV file to write: what was found by each model");
   add("no-intervals", po::bool_switch(&quick), "intervals from the curvature alone: quicker");
   po::variables_map values;
-  const po::positional_options_description none;
-  po::store(po::command_line_parser(argc, argv).options(options).positional(none).run(), values);
-  po::notify(values);
-  if (values.count("help") != 0) {
-    std::cout << options;
-    return std::nullopt;
-  }
+  if (!readCommandLine(wordsOf(argc, argv), options, "", values)) return std::nullopt;
   if (arguments.record.empty() == point.empty()) {
     throw ConfigError("--record, or else --point: one of them must be given, the file with the record");
   }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/atomic_file.h"
+#include "base/command_line.h"
 #include "base/errors.h"
 #include "base/exit_status.h"
 #include "base/standard_output.h"
@@ -79,10 +80,5 @@ int run(int argc, char** argv) {
 }  // namespace microinjection
 
 int main(int argc, char** argv) {
-  try {
-    return microinjection::run(argc, argv);
-  } catch (const std::exception& exception) {
-    std::cerr << "indent: " << exception.what() << '\n';
-    return microinjection::kBadUsage;
-  }
+  return microinjection::runProgram("indent", [&] { return microinjection::run(argc, argv); });
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/atomic_file.h"
+#include "base/command_line.h"
 #include "base/errors.h"
 #include "base/exit_status.h"
 #include "base/standard_output.h"
@@ -20,10 +21,10 @@
 #include "vision/camera/folder_source.h"
 #include "vision/camera/image_file.h"
 #include "vision/camera/video_source.h"
-#include "vision/detection/overlay.h"
 #include "vision/measurement/cell_measurement.h"
 #include "vision/measurement/measured_scene.h"
 #include "vision/measurement/sharpest_plane.h"
+#include "vision/track/overlay.h"
 
 namespace microinjection {
 namespace {
@@ -174,10 +175,5 @@ int run(int argc, char** argv) {
 }  // namespace microinjection
 
 int main(int argc, char** argv) {
-  try {
-    return microinjection::run(argc, argv);
-  } catch (const std::exception& exception) {
-    std::cerr << "measure_cell: " << exception.what() << '\n';
-    return microinjection::kBadUsage;
-  }
+  return microinjection::runProgram("measure_cell", [&] { return microinjection::run(argc, argv); });
 }

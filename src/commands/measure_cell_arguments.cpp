@@ -3,6 +3,7 @@
 #include <boost/program_options.hpp>
 #include <iostream>
 
+#include "base/command_line.h"
 #include "base/config_errors.h"
 #include "base/errors.h"
 #include "base/output_files.h"
@@ -67,18 +68,7 @@ std::optional<MeasureCellArguments> parseMeasureCellArguments(int argc, char** a
   add("families", po::value(&arguments.families)->value_name("FOLDER"),
       "folder of the families, such as config/families");
   po::variables_map given;
-  try {
-    po::positional_options_description first;
-    po::store(po::command_line_parser(argc, argv).options(options).positional(first.add("input", 1)).run(), given);
-    po::notify(given);
-  } catch (const po::error& error) {
-    throw ConfigError(error.what());
-  }
-  if (given.count("help") > 0) {
-    std::cout << kHelp << options;
-    flushStandardOutput();
-    return std::nullopt;
-  }
+  if (!readCommandLine(wordsOf(argc, argv), options, kHelp, given, "input")) return std::nullopt;
   if (!config.empty()) readVision(config, arguments.vision);
   if (!calibration.empty()) arguments.vision.calibration = calibration;
   ConfigErrors errors;

@@ -13,8 +13,8 @@
 
 namespace microinjection {
 
-PathStore::PathStore(const Scene& scene, const Preparation& plan)
-    : scene_(scene), plan_(plan), folder_(preparedFolder(scene, plan)) {
+PathStore::PathStore(const Scene& scene, const SurrogatePlan& plan)
+    : scene_(scene), plan_(plan), folder_(surrogateFolder(scene, plan)) {
   if (folder_.empty()) throw ConfigError("neither XDG_CACHE_HOME nor HOME is set: no folder for the data");
 }
 

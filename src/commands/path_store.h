@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "cell/model/scene.h"
-#include "cell/surrogate/preparation.h"
+#include "cell/surrogate/surrogate_plan.h"
 #include "cell/surrogate/training_ray.h"
 
 namespace microinjection {
@@ -13,10 +13,10 @@ namespace microinjection {
 class PathStore {
  public:
   /// `scene` is without dimension. Throws ConfigError without a cache.
-  PathStore(const Scene& scene, const Preparation& plan);
+  PathStore(const Scene& scene, const SurrogatePlan& plan);
 
   const Scene& scene() const { return scene_; }
-  const Preparation& plan() const { return plan_; }
+  const SurrogatePlan& plan() const { return plan_; }
   const std::string& folder() const { return folder_; }
   std::string file(std::size_t ray) const;
 
@@ -34,7 +34,7 @@ class PathStore {
   std::string description(std::size_t ray) const;
 
   Scene scene_;
-  Preparation plan_;
+  SurrogatePlan plan_;
   std::string folder_;
 };
 

@@ -36,15 +36,15 @@ class Preparing {
       : arguments_(arguments),
         scene_(loadScene(arguments.scene)),
         solved_(withoutDimension(scene_)),
-        plan_(Preparation::plan(solved_, PreparationRange::standard(solved_))),
+        plan_(SurrogatePlan::plan(solved_, SurrogateRange::standard(solved_))),
         paths_(solved_, plan_) {
-    Preparation::check(scene_);
+    SurrogatePlan::check(scene_);
   }
 
   int work() { return paths_.solve(arguments_.ray) == PathStore::Outcome::kBusy ? kBusyStatus : kDone; }
 
   int run() {
-    const std::string path = preparedFile(solved_, plan_);
+    const std::string path = surrogateFile(solved_, plan_);
     if (const auto before = preparedBefore(path)) {
       std::printf("prepare: was prepared before: %s\n", path.c_str());
       reportRange(before->range);
@@ -124,7 +124,7 @@ class Preparing {
   }
 
   /// Reports what is smaller than planned.
-  void reportRange(const PreparationRange& reached) const {
+  void reportRange(const SurrogateRange& reached) const {
     const double unit = 1e6 * scene_.radius();  // um
     if (reached.depth < 0.999 * plan_.range.depth) {
       std::fprintf(stderr, "prepare: the range is smaller than planned: %.3g um deep, %.3g um sideways\n",
@@ -144,8 +144,8 @@ class Preparing {
 
   PrepareArguments arguments_;
   Scene scene_;
-  Scene solved_;      ///< the same without dimension
-  Preparation plan_;  ///< of it
+  Scene solved_;        ///< the same without dimension
+  SurrogatePlan plan_;  ///< of it
   PathStore paths_;
 };
 

@@ -22,7 +22,7 @@ Usage: prepare --scene FILE [--jobs N] [...]
        prepare --family FILE --members N --plan PLAN --gather   adds the members, when all tasks are done
 
 Takes minutes, shows its progress, and may be interrupted: the next call continues from the finished paths. The data are
-in $XDG_CACHE_HOME (else ~/.cache) under cell_microinjection/prepared, in a folder named after the cell, the tip and
+in $XDG_CACHE_HOME (else ~/.cache) under cell_microinjection/surrogates, in a folder named after the cell, the tip and
 the program's version. Cells that differ in scale, or whose moduli and tensions differ by one factor, have the same data.
 Another tip, another ratio of lengths or another ratio of moduli needs its own; another needle offset does not.
 

@@ -9,6 +9,7 @@
 #include <opencv2/imgproc.hpp>
 #include <string>
 
+#include "base/command_line.h"
 #include "base/cpu_time.h"
 #include "base/errors.h"
 #include "base/exit_status.h"
@@ -80,11 +81,8 @@ int main(int argc, char** argv) {
     std::fputs(kUsage, stderr);
     return kBadUsage;
   }
-  try {
+  return runProgram("segment_image", [&] {
     run(argv[1], argv[2], argc > 3 ? argv[3] : "");
-    return 0;
-  } catch (const std::exception& error) {
-    std::cerr << "segment_image: " << error.what() << '\n';
-    return kBadUsage;
-  }
+    return kDone;
+  });
 }

@@ -8,7 +8,9 @@
 
 #include "base/atomic_file.h"
 #include "base/cache_file.h"
+#include "base/command_line.h"
 #include "base/errors.h"
+#include "base/exit_status.h"
 #include "base/standard_output.h"
 #include "commands/session_arguments.h"
 #include "session/launch_file.h"
@@ -64,13 +66,9 @@ void run(const SessionArguments& arguments) {
 
 int main(int argc, char** argv) {
   using namespace microinjection;
-  try {
+  return runProgram("session", [&] {
     const std::optional<SessionArguments> arguments = parseSessionArguments(argc, argv);
     if (arguments) run(*arguments);
-    return 0;
-  } catch (const std::exception& error) {
-    std::istringstream lines(error.what());
-    for (std::string line; std::getline(lines, line);) std::cerr << "session: " << line << '\n';
-    return 2;
-  }
+    return kDone;
+  });
 }

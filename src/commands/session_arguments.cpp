@@ -4,6 +4,7 @@
 #include <iostream>
 #include <sstream>
 
+#include "base/command_line.h"
 #include "base/config_errors.h"
 #include "base/errors.h"
 #include "base/output_files.h"
@@ -62,19 +63,7 @@ std::optional<SessionArguments> parseSessionArguments(int argc, char** argv) {
   add("view", po::value(&arguments.view)->value_name("OUT"), "writes the configuration of the session's rviz");
   add("only", po::value(&only)->value_name("NODES"), "names separated by spaces: nothing else takes part; empty: all");
   po::variables_map given;
-  try {
-    po::positional_options_description first;
-    po::store(po::command_line_parser(options_given).options(options).positional(first.add("session", -1)).run(),
-              given);
-    po::notify(given);
-  } catch (const po::error& error) {
-    throw ConfigError(error.what());
-  }
-  if (given.count("help") > 0) {
-    std::cout << kHelp << options;
-    flushStandardOutput();
-    return std::nullopt;
-  }
+  if (!readCommandLine(options_given, options, kHelp, given, "session", -1)) return std::nullopt;
   ConfigErrors errors;
   errors.require(positional.size() < 2, "SESSION", join(positional, " "), "", "one file or name");
   errors.require(given.count("launch") == 0 || !arguments.launch.empty(), "--launch", "", "", "the path of a file");

@@ -25,7 +25,7 @@ bool isModulus(const std::string& name) { return name == "young_modulus" || name
 }  // namespace
 
 const char* const CellEstimatorNode::kHelp =
-    "cell_estimator: the online twin. Finds modulus and height of the cell under the needle and has cell_simulator\n"
+    "cell_estimator: the cell estimator. Finds modulus and height of the cell under the needle and has cell_simulator\n"
     "serve them.\n"
     "In: /needle/measured_cp, /force_sensor/measured_cf, /controller/injection_state, /cell/state, /vision/state.\n"
     "Out: /cell/estimate, /cell/set_parameters, /cell/puncture_score.\n";
@@ -51,7 +51,7 @@ CellEstimatorNode::CellEstimatorNode(Bus& bus)
   std::string reason;
   auto member = findFamilyCell(parameters_.families, scene, reason);
   if (!member) {
-    throw ConfigError(parameters_.scene + ": the twin needs a cell of a family, and this is of none" +
+    throw ConfigError(parameters_.scene + ": the estimator needs a cell of a family, and this is of none" +
                       (reason.empty() ? "" : ": " + reason));
   }
   if (parameters_.images) dimples_ = std::make_unique<DimpleReader>(bus, parameters_.image);

@@ -24,7 +24,7 @@
 
 namespace microinjection {
 
-/// The online twin: finds modulus and height of the cell that the needle indents, see
+/// The cell estimator: finds modulus and height of the cell that the needle indents, see
 /// CellEstimator, and has cell_simulator serve them.
 ///
 /// In:  /needle/measured_cp, /force_sensor/measured_cf, /controller/injection_state, /cell/state

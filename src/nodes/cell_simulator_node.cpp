@@ -24,13 +24,13 @@ CellSimulatorNode::Parameters CellSimulatorNode::Parameters::read(const Bus& bus
   Parameters parameters;
   ConfigReader reader = parameterReader(bus);
   reader.path("scene", parameters.scene, ConfigReader::kRequired);
-  reader.choice("model", parameters.model, {"auto", "prepared", "live", "explicit"});
+  reader.choice("model", parameters.model, {"auto", "surrogate", "live", "explicit"});
   reader.path("families", parameters.models.families);
   reader.choice("needle", parameters.needle, {"measured", "true"});
   reader.number("rate", parameters.rate, Range::closed(50, 5000));
   reader.number("state_rate", parameters.state_rate, {0, 100, true, false});
   reader.number("needle_timeout", parameters.needle_timeout, Range::positive());
-  parameters.models.online = OnlineCellModelConfig::read(reader);
+  parameters.models.live = LiveCellModelConfig::read(reader);
   parameters.models.explicit_dynamics = ExplicitCellModelConfig::read(reader);
   reader.finish();
   return parameters;
@@ -44,7 +44,7 @@ CellSimulatorNode::CellSimulatorNode(Bus& bus)
       force_(cycle_.output<geometry_msgs::WrenchStamped>("cell/predicted_cf")),
       contact_(cycle_.output<cell_microinjection::CellContact>("cell/contact")),
       state_(cycle_.output<cell_microinjection::CellState>("cell/state", true)) {
-  parameters_.models.online.fixed_period = cycle_.bus().isVirtual();
+  parameters_.models.live.fixed_period = cycle_.bus().isVirtual();
   const Scene scene = loadScene(parameters_.scene);
   chosen_ = makeCell(scene);
   cell_ = std::make_unique<PlacedCell>(*chosen_.cell);

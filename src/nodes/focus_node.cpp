@@ -90,17 +90,17 @@ void FocusNode::onVision(const cell_microinjection::VisionState& message) {
 
 void FocusNode::onImage(const sensor_msgs::Image& message) {
   reading_.reset();
-  blind_ = imageDefect(message);
+  image_problem_ = imageDefect(message);
   reading_receipt_ = receive(message.header.stamp);
-  if (blind_.empty() && isOld(reading_receipt_)) blind_ = "the image is old, or stamped ahead";
-  if (blind_.empty() && data_.step(message.data, 1)) blind_ = "the camera repeats its last image";
-  if (!blind_.empty()) return bus_.refusals().add(kImageTopic, blind_);
+  if (image_problem_.empty() && isOld(reading_receipt_)) image_problem_ = "the image is old, or stamped ahead";
+  if (image_problem_.empty() && data_.step(message.data, 1)) image_problem_ = "the camera repeats its last image";
+  if (!image_problem_.empty()) return bus_.refusals().add(kImageTopic, image_problem_);
   size_ = {static_cast<int>(message.width), static_cast<int>(message.height)};
   if (!sizeChange(first_size_, size_).empty()) return;  // the window is not of this one: the search ends
-  blind_ = "its format is wrong";                       // until it was read: cv_bridge throws
+  image_problem_ = "its format is wrong";               // until it was read: cv_bridge throws
   const Frame frame(pixelsOf(message));
-  blind_ = frame.refusal();
-  if (!blind_.empty()) return;
+  image_problem_ = frame.refusal();
+  if (!image_problem_.empty()) return;
   reading_ = FocusSearch::Reading{message.header.stamp.toSec(), coreSharpness(frame, window_)};
 }
 
@@ -148,7 +148,7 @@ void FocusNode::step() {
   if (const std::string change = sizeChange(first_size_, size_); !change.empty()) return finish(false, change);
   const double now = bus_.now().toSec();
   if (rough_) return verify(now);
-  const auto goal = search_->step({now, position(), isOld(reading_receipt_) ? std::nullopt : reading_, blind_});
+  const auto goal = search_->step({now, position(), isOld(reading_receipt_) ? std::nullopt : reading_, image_problem_});
   if (goal) move(*goal);
   if (!search_->failure().empty()) {
     rough_ = repeated_ ? std::nullopt : search_->sharpest();
@@ -205,7 +205,7 @@ FocusNode::Result FocusNode::end(bool success) {
 
 void FocusNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.summary(diagnostic_msgs::DiagnosticStatus::OK, search_ ? "searches the focus" : "waits for a goal");
-  if (search_ && !blind_.empty()) status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, blind_);
+  if (search_ && !image_problem_.empty()) status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, image_problem_);
   if (search_ && !position())
     status.mergeSummary(diagnostic_msgs::DiagnosticStatus::ERROR, "/focus/measured_js is silent");
   bus_.refusals().report(status);

@@ -89,7 +89,7 @@ class FocusNode : public GoalNode<cell_microinjection::FindFocusAction> {
   Receipt reading_receipt_;
   /// px: of the image that vision/state is of, of the search's first one, and of the newest one.
   Eigen::Vector2i seen_size_ = Eigen::Vector2i::Zero(), first_size_ = seen_size_, size_ = seen_size_;
-  std::string blind_;                              ///< why the newest image is not usable; empty: it is
+  std::string image_problem_;                      ///< why the newest image is not usable; empty: it is
   Repetition<std::vector<std::uint8_t>> data_{0};  ///< of the images that arrived: noise changes each
 
   Publisher<sensor_msgs::JointState> command_;

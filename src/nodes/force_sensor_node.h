@@ -13,9 +13,9 @@
 
 #include "base/background_file.h"
 #include "base/repetition.h"
+#include "hardware/sensor/force_readout.h"
 #include "nodes/needle/force_sources.h"
 #include "nodes/runtime/cycle.h"
-#include "rig/sensor/force_readout.h"
 
 namespace microinjection {
 

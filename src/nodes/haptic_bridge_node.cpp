@@ -5,8 +5,8 @@
 #include <limits>
 #include <utility>
 
-#include "nodes/haptic/local_rig.h"
-#include "nodes/link/remote_rig.h"
+#include "nodes/haptic/local_peer.h"
+#include "nodes/link/remote_peer.h"
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/node_parameters.h"
 
@@ -81,9 +81,9 @@ HapticBridgeNode::HapticBridgeNode(Bus& bus)
   hand_.onMessage([this](const geometry_msgs::PoseStamped& hand, const ros::Time& now) { watch(hand, now); });
   const HapticBridgeConfig& model = parameters_.model;
   if (parameters_.link.used()) {
-    rig_ = std::make_unique<RemoteRig>(cycle_, parameters_.link, model);
+    rig_ = std::make_unique<RemotePeer>(cycle_, parameters_.link, model);
   } else {
-    rig_ = std::make_unique<LocalRig>(cycle_, parameters_.timeouts.rig, model.force, parameters_.quiet_sensor, trace_);
+    rig_ = std::make_unique<LocalPeer>(cycle_, parameters_.timeouts.rig, model.force, parameters_.quiet_sensor, trace_);
   }
   cycle_.diagnostics().add("loop", [this](auto& status) { report(status); });
   bus.onEnd([this] { publishZeroForce(); });

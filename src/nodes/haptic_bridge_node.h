@@ -11,8 +11,8 @@
 #include "base/repetition.h"
 #include "nodes/haptic/axes_service.h"
 #include "nodes/haptic/force_receiver.h"
-#include "nodes/haptic/rig_inputs.h"
-#include "nodes/haptic/rig_side.h"
+#include "nodes/haptic/peer_inputs.h"
+#include "nodes/haptic/teleop_peer.h"
 #include "nodes/runtime/cycle.h"
 #include "nodes/runtime/loop_state.h"
 #include "operation/link/link_config.h"
@@ -34,7 +34,7 @@ namespace microinjection {
 ///      with require_operator)
 /// Out: /haptic/servo_cf (WrenchStamped, N at the hand), /haptic/loop_state (LoopState),
 ///      /haptic/force_trace (TimeReference)
-/// and those of LocalRig or, with link/scheme wave, of RemoteRig.
+/// and those of LocalPeer or, with link/scheme wave, of RemotePeer.
 /// Service: ~calibrate_axes (CalibrateAxes)
 ///
 /// Parameters: config/haptic_bridge.yaml
@@ -50,7 +50,7 @@ class HapticBridgeNode {
     double hand_unchanged = 2;  ///< of a pose, see Repetition; 0: for ever
     double clutch = 0;
     double operator_present = 0.2;
-    RigTimeouts rig;
+    PeerTimeouts rig;
     static Timeouts read(ConfigReader reader);
   };
   struct Parameters {
@@ -82,7 +82,7 @@ class HapticBridgeNode {
   Input<sensor_msgs::Joy>* operator_present_ = nullptr;  ///< null: not required
   Output<geometry_msgs::WrenchStamped>& hand_force_;
   Output<sensor_msgs::TimeReference>& trace_;
-  std::unique_ptr<RigSide> rig_;
+  std::unique_ptr<TeleopPeer> rig_;
   LoopStatePublisher loop_state_;
   ForceReceiver receiver_;
   Repetition<Eigen::Vector3d> hand_poses_;  ///< m, exposed to s

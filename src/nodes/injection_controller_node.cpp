@@ -159,7 +159,7 @@ void InjectionControllerNode::adaptTo(const cell_microinjection::ManipulatorAbil
   ROS_INFO_STREAM("rig: " << rig.device << ", driven at " << model_.speedLimit() << " m/s at the most");
 }
 
-/// A twin that is contradicted by the force expects nothing.
+/// An estimator that is contradicted by the force expects nothing.
 void InjectionControllerNode::receiveEstimate(const cell_microinjection::CellEstimate& message) {
   const auto& puncture = message.puncture;
   estimated_ = message.header.stamp;
@@ -167,7 +167,7 @@ void InjectionControllerNode::receiveEstimate(const cell_microinjection::CellEst
   if (message.verdict == "inconsistent") expected_.reset();
 }
 
-/// While the twin is alive.
+/// While the estimator is alive.
 std::optional<ExpectedPuncture> InjectionControllerNode::expectedPuncture(const ros::Time& now) const {
   if (!expected_) return std::nullopt;
   const double age = secondsBetween(estimated_, now);

@@ -17,7 +17,7 @@
 #include "cell_microinjection/StringStamped.h"
 #include "nodes/injection/injection_action.h"
 #include "nodes/injection/injector_link.h"
-#include "nodes/injection/rig_watch.h"
+#include "nodes/injection/manipulator_watch.h"
 #include "nodes/injection/witnesses.h"
 #include "nodes/runtime/command_log.h"
 #include "nodes/runtime/command_source.h"
@@ -92,7 +92,7 @@ class InjectionControllerNode {
   ros::Time rig_setpoint_heard_;
   double needle_patience_ = 0.2;  ///< s
   double needle_step_ = 0;        ///< m, the rig's resolution
-  RigWatch rig_;
+  ManipulatorWatch rig_;
   Witnesses witnesses_;
   LoopStatePublisher loop_state_;
   InjectionAction action_;
@@ -101,7 +101,7 @@ class InjectionControllerNode {
   BusyReport busy_;
   bool state_command_received_ = false;
   Subscription commands_, abilities_, estimates_, rig_setpoints_;
-  std::optional<ExpectedPuncture> expected_;  ///< by the twin
+  std::optional<ExpectedPuncture> expected_;  ///< by the estimator
   ros::Time estimated_;                       ///< its time
   bool adapted_ = false;                      ///< to a rig's abilities
   Publisher<cell_microinjection::OperatingState> state_;

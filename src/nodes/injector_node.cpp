@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "base/errors.h"
+#include "hardware/injector/injector_registry.h"
+#include "hardware/injector/serial_injector.h"
+#include "hardware/serial/emulated_wire.h"
 #include "nodes/runtime/node_parameters.h"
-#include "rig/injector/injector_registry.h"
-#include "rig/injector/serial_injector.h"
-#include "rig/serial/emulated_wire.h"
 
 namespace microinjection {
 

@@ -10,13 +10,13 @@
 #include "cell_microinjection/InjectionPulse.h"
 #include "cell_microinjection/InjectorState.h"
 #include "cell_microinjection/StringStamped.h"
+#include "hardware/injector/injector_model.h"
+#include "hardware/injector/injector_protocol.h"
+#include "hardware/injector/pulse_ids.h"
+#include "hardware/serial/serial_port.h"
+#include "hardware/serial/wire.h"
 #include "nodes/runtime/command_log.h"
 #include "nodes/runtime/cycle.h"
-#include "rig/injector/injector_model.h"
-#include "rig/injector/injector_protocol.h"
-#include "rig/injector/pulse_ids.h"
-#include "rig/serial/serial_port.h"
-#include "rig/serial/wire.h"
 
 namespace microinjection {
 

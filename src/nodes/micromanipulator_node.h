@@ -2,18 +2,18 @@
 
 #include <string>
 
+#include "nodes/needle/manipulator_setup.h"
 #include "nodes/needle/needle_commands.h"
 #include "nodes/needle/needle_publisher.h"
-#include "nodes/needle/rig_device.h"
 #include "nodes/runtime/cycle.h"
 #include "nodes/runtime/loop_state.h"
 
 namespace microinjection {
 
-/// A micromanipulator, simulated, emulated, real or of another node (needle/external_rig.h), with the same topics and
-/// CRTK's operating states. A refused command does not move the needle. Log and diagnostics report the reason, and each
-/// move that another command ends. When a second node commands the needle beside the first, the state is FAULT until
-/// `enable` (rig/manipulator/command_authority.h).
+/// A micromanipulator, simulated, emulated, real or of another node (needle/external_manipulator.h), with the same
+/// topics and CRTK's operating states. A refused command does not move the needle. Log and diagnostics report the
+/// reason, and each move that another command ends. When a second node commands the needle beside the first, the state
+/// is FAULT until `enable` (hardware/manipulator/command_authority.h).
 ///
 /// In:  /needle/servo_cp (PoseStamped), /needle/servo_cv (TwistStamped), /needle/move_cp
 ///      (PoseStamped), in `world`. Old ones are refused. Without a stamp the time of arrival
@@ -21,7 +21,7 @@ namespace microinjection {
 ///      /needle/state_command (StringStamped: enable, disable, pause, resume, home, unhome of
 ///      base/operating_state.h, and stop, which keeps the state). home moves nothing: the driver
 ///      finds the axes' reference positions.
-///      /needle/emulated_fault (StringStamped, see rig/serial/fault.h), of a simulated or emulated
+///      /needle/emulated_fault (StringStamped, see hardware/serial/fault.h), of a simulated or emulated
 ///      device
 /// Out: /needle/measured_cp (PoseStamped), /needle/measured_cv (TwistStamped): the tip in `world`,
 ///      stamp 0 while the device's position is invalid
@@ -60,7 +60,7 @@ class MicromanipulatorNode {
   Parameters parameters_;
   ManipulatorGeometry geometry_;
   Cycle cycle_;
-  RigDevice rig_;
+  ManipulatorSetup rig_;
   Micromanipulator model_;
   NeedleCommands commands_;
   NeedlePublisher publisher_;

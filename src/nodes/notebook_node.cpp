@@ -76,7 +76,7 @@ void NotebookNode::onStatus(const cell_microinjection::InjectionStatus& message)
 
 void NotebookNode::onEstimate(const cell_microinjection::CellEstimate& message) {
   if (message.verdict == "prior" || message.samples == 0) return;  // the needle is out of the cell
-  entry_.modulus = NotebookEntry::Interval{message.modulus, message.modulus_low, message.modulus_high};
+  entry_.modulus = NotebookEntry::Estimate{message.modulus, message.modulus_low, message.modulus_high};
   entry_.verdict = message.verdict;
 }
 
@@ -85,8 +85,8 @@ void NotebookNode::onScore(const cell_microinjection::PunctureScore& message) {
   entry_.puncture_force = message.force;
   const auto& expected = message.predicted;
   if (!(expected.depth > 0)) return;
-  entry_.expected_depth = NotebookEntry::Interval{expected.depth, expected.depth_low, expected.depth_high};
-  entry_.expected_force = NotebookEntry::Interval{expected.force, expected.force_low, expected.force_high};
+  entry_.expected_depth = NotebookEntry::Estimate{expected.depth, expected.depth_low, expected.depth_high};
+  entry_.expected_force = NotebookEntry::Estimate{expected.force, expected.force_low, expected.force_high};
 }
 
 void NotebookNode::onCell(const cell_microinjection::CellState& message) {

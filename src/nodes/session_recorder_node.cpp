@@ -99,7 +99,7 @@ SessionRecorderNode::SessionRecorderNode(Bus& bus)
     clutch_ = &cycle_.input<sensor_msgs::Joy>("haptic/clutch", InputPhase::kSampled, kForever);
     hand_force_ = &cycle_.input<geometry_msgs::WrenchStamped>("haptic/servo_cf", InputPhase::kSampled, 0.05);
     hand_force_->one_sender = false;  // the watchdog sends zero force beside the bridge
-    phase_ = &cycle_.input<cell_microinjection::StringStamped>("operator/phase", InputPhase::kSampled, kForever);
+    phase_ = &cycle_.input<cell_microinjection::StringStamped>("virtual_hand/phase", InputPhase::kSampled, kForever);
   }
   began_ = localTime(bus);
   if (parameters_.training) training_ = std::make_unique<TrainingLog>(*parameters_.training);
@@ -220,7 +220,7 @@ void SessionRecorderNode::score(std::vector<std::string>& errors) const {
     std::cerr << "no picture: " << reason << "; the history is " << config.history << std::endl;
   };
   try {
-    runWorkers({{plot, config.history, picture, "--operator", config.operator_name}}, 1, [&](std::size_t, int status) {
+    runWorkers({{plot, config.history, picture, "--trainee", config.trainee}}, 1, [&](std::size_t, int status) {
       if (status == 0) std::cout << "compared with earlier sessions in " << picture << std::endl;
       if (status != 0) tellNoPicture(plot + " has failed");
     });

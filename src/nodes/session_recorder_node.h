@@ -37,7 +37,7 @@ namespace microinjection {
 ///
 /// In:  /needle/measured_cp, /cell/predicted_cf, /force_sensor/measured_cf, /cell/state,
 ///      /controller/injection_state, with an injector /injector/state, with a hand
-///      /haptic/measured_cp, /haptic/servo_cf, /haptic/clutch, /operator/phase;
+///      /haptic/measured_cp, /haptic/servo_cf, /haptic/clutch, /virtual_hand/phase;
 ///      /needle/setpoint_trace, /haptic/force_trace; /diagnostics, /tf, /tf_static,
 ///      /controller/operating_state
 ///

@@ -49,7 +49,7 @@ TeleoperationFollowerNode::TeleoperationFollowerNode(Bus& bus)
 }
 
 void TeleoperationFollowerNode::step(const Cycle::Tick& tick) {
-  const RigInputs::Reading rig = rig_.read(tick.now);
+  const PeerInputs::Reading rig = rig_.read(tick.now);
   LinkFollower::Input input;
   input.controller = rig.controller;
   input.needle = rig.needle;

@@ -3,7 +3,7 @@
 #include <geometry_msgs/PoseStamped.h>
 
 #include "cell_microinjection/LinkPacket.h"
-#include "nodes/haptic/rig_inputs.h"
+#include "nodes/haptic/peer_inputs.h"
 #include "nodes/runtime/cycle.h"
 #include "nodes/runtime/loop_state.h"
 #include "operation/link/link_follower.h"
@@ -15,7 +15,7 @@ namespace microinjection {
 /// it withdraws its target, so that the controller holds the needle, and reports this to the hand's
 /// side.
 ///
-/// In:  /link/rig/received (LinkPacket) and those of RigInputs
+/// In:  /link/rig/received (LinkPacket) and those of PeerInputs
 /// Out: /link/rig/sent (LinkPacket), /link/rig/loop_state (LoopState), /teleop/servo_cp
 ///      (PoseStamped, tip in `world`)
 ///
@@ -29,7 +29,7 @@ class TeleoperationFollowerNode {
  private:
   struct Parameters {
     double rate = 1000;
-    RigTimeouts timeouts;
+    PeerTimeouts timeouts;
     ForceSourceConfig force;
     bool quiet_sensor = false;
     LinkConfig link;
@@ -42,7 +42,7 @@ class TeleoperationFollowerNode {
   Parameters parameters_;
   LinkFollower model_;
   Cycle cycle_;
-  RigInputs rig_;
+  PeerInputs rig_;
   Output<cell_microinjection::LinkPacket>& sent_;
   Output<geometry_msgs::PoseStamped>& target_;
   LoopStatePublisher loop_state_;

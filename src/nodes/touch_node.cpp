@@ -42,24 +42,24 @@ TouchNode::TouchNode(Bus& bus)
           [this](const geometry_msgs::WrenchStamped& message, const std::string&) { onForce(message); })) {}
 
 void TouchNode::onVision(const cell_microinjection::VisionState& message) {
-  sight_.reset();
+  observation_.reset();
   const auto& tip = message.injection_pipette;
   const auto& cell = message.cell;
   const auto& beside = message.indentation;
-  sight_receipt_ = receive(message.header.stamp);
-  blind_ = "the image is old, or stamped ahead";
-  if (isOld(sight_receipt_, parameters_.input_timeout)) return;
-  blind_ = "the cell is not found: " + cell.reason;
+  observation_receipt_ = receive(message.header.stamp);
+  image_problem_ = "the image is old, or stamped ahead";
+  if (isOld(observation_receipt_, parameters_.input_timeout)) return;
+  image_problem_ = "the cell is not found: " + cell.reason;
   if (cell.verdict == cell.NOT_FOUND) return;
-  blind_ = "the tip is not found: " + tip.reason;
+  image_problem_ = "the tip is not found: " + tip.reason;
   if (tip.verdict == tip.NOT_FOUND) return;
-  blind_ = "the outline beside the needle is not clear: " + beside.reason;
+  image_problem_ = "the outline beside the needle is not clear: " + beside.reason;
   const bool certain = cell.verdict == cell.FOUND && tip.verdict == tip.FOUND;
-  const TouchSearch::Sight sight{message.header.stamp.toSec(), beside.displacement, beside.displacement_deviation,
-                                 beside.gap, certain};
-  if (!std::isfinite(sight.displacement + sight.deviation + sight.gap)) return;
-  blind_.clear();
-  sight_ = sight;
+  const TouchSearch::Observation observation{message.header.stamp.toSec(), beside.displacement,
+                                             beside.displacement_deviation, beside.gap, certain};
+  if (!std::isfinite(observation.displacement + observation.deviation + observation.gap)) return;
+  image_problem_.clear();
+  observation_ = observation;
 }
 
 /// An invalid reading is as none: force_timeout after the last valid one the search fails.
@@ -73,9 +73,9 @@ void TouchNode::onForce(const geometry_msgs::WrenchStamped& message) {
 }
 
 TouchSearch::Input TouchNode::input() const {
-  TouchSearch::Input input{bus_.now().toSec(), watch_.position(), watch_.restedSince(), sight_, blind_, force_,
-                           force_stamp_};
-  if (isOld(sight_receipt_, parameters_.input_timeout)) input.sight.reset();
+  TouchSearch::Input input{
+      bus_.now().toSec(), watch_.position(), watch_.restedSince(), observation_, image_problem_, force_, force_stamp_};
+  if (isOld(observation_receipt_, parameters_.input_timeout)) input.observation.reset();
   if (isOld(force_receipt_, parameters_.force_timeout)) input.force.reset();
   return input;
 }
@@ -86,11 +86,13 @@ void TouchNode::begin(const Goal& goal) {
     throw ConfigError("travel = " + std::to_string(goal.travel) + " m: must be from 0 to " + std::to_string(most) +
                       " m");
   start_ = setpoints_.requireStart();
-  const auto sight = input().sight;
-  if (!sight) throw ConfigError("the image does not show the touch: " + (blind_.empty() ? "the image is old" : blind_));
+  const auto observation = input().observation;
+  if (!observation)
+    throw ConfigError("the image does not show the touch: " +
+                      (image_problem_.empty() ? "the image is old" : image_problem_));
   if (forces_.publishers() > 0 && !input().force)
     throw ConfigError("/force_sensor/measured_cf is silent or invalid: the force could not be watched");
-  if (!sight->certain) throw ConfigError("the cell or the tip is uncertain in the image");
+  if (!observation->certain) throw ConfigError("the cell or the tip is uncertain in the image");
   travel_ = goal.travel > 0 ? goal.travel : most;
   setpoints_.begin(start_);
 }

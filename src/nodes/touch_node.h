@@ -57,9 +57,9 @@ class TouchNode : public GoalNode<cell_microinjection::FindTouchAction> {
   double travel_ = 0;  ///< m, largest one of the goal
   Eigen::Vector3d start_ = Eigen::Vector3d::Zero();
   std::unique_ptr<TouchSearch> search_;  ///< null: the controller has not engaged yet
-  std::optional<TouchSearch::Sight> sight_;
-  Receipt sight_receipt_;
-  std::string blind_ = "no image was received";
+  std::optional<TouchSearch::Observation> observation_;
+  Receipt observation_receipt_;
+  std::string image_problem_ = "no image was received";
   std::optional<double> force_;  ///< N along the needle
   double force_stamp_ = 0;       ///< s
   Receipt force_receipt_;

@@ -17,7 +17,7 @@
 #include "nodes/imaging/vision_messages.h"
 #include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/node_parameters.h"
-#include "vision/calibration/calibration_path.h"
+#include "vision/calibration/calibration_file.h"
 #include "vision/measurement/measured_scene.h"
 
 namespace microinjection {

@@ -7,7 +7,6 @@
 #include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/node_parameters.h"
 #include "vision/calibration/calibration_file.h"
-#include "vision/calibration/calibration_path.h"
 
 namespace microinjection {
 namespace {

@@ -1,7 +1,5 @@
 #include "rviz/axes_box.h"
-
-#include <QGridLayout>
-#include <QLabel>
+#include "rviz/box_layout.h"
 
 namespace microinjection {
 namespace {
@@ -17,12 +15,7 @@ std::uint8_t actionOf(AxesTask task, bool running) {
 }  // namespace
 
 AxesBox::AxesBox(QWidget* parent) : QWidget(parent), report_(new LampRow("", 2, this)) {
-  auto* layout = new QGridLayout(this);
-  layout->setContentsMargins(0, 0, 0, 0);
-  layout->setHorizontalSpacing(8);
-  layout->setVerticalSpacing(1);
-  layout->setColumnStretch(1, 1);
-  layout->addWidget(new QLabel("<b>Axes of the hand</b>", this), 0, 0, 1, 2);
+  QGridLayout* layout = boxLayout(this, "Axes of the hand");
   int line = 1;
   for (const AxesTask task : kAxesTasks) {
     rows_.emplace_back(QString::fromStdString(offer(task, {}).label), 1, this, layout, line++,

@@ -1,21 +1,15 @@
 #include "rviz/calibration_box.h"
 
-#include <QGridLayout>
-#include <QLabel>
 #include <utility>
 
+#include "rviz/box_layout.h"
 #include "rviz/camera_task_runners.h"
 
 namespace microinjection {
 
 CalibrationBox::CalibrationBox(std::function<SessionView()> newest, QWidget* parent)
     : QWidget(parent), newest_(std::move(newest)), report_(new LampRow("", 2, this)) {
-  auto* layout = new QGridLayout(this);
-  layout->setContentsMargins(0, 0, 0, 0);
-  layout->setHorizontalSpacing(8);
-  layout->setVerticalSpacing(1);
-  layout->setColumnStretch(1, 1);
-  layout->addWidget(new QLabel("<b>Needle and camera</b>", this), 0, 0, 1, 2);
+  QGridLayout* layout = boxLayout(this, "Needle and camera");
   int line = 1;
   for (const CameraTask task : kCameraTasks)
     rows_.emplace_back(toText(task), 1, this, layout, line++, [this, task] { press(task); });

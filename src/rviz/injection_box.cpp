@@ -1,9 +1,8 @@
 #include "rviz/injection_box.h"
 
-#include <QGridLayout>
-#include <QLabel>
 #include <utility>
 
+#include "rviz/box_layout.h"
 #include "rviz/session_clock.h"
 
 namespace microinjection {
@@ -19,12 +18,7 @@ std::pair<bool, std::string> outcomeOf(const InjectResult& result) {
 
 InjectionBox::InjectionBox(std::function<SessionView()> newest, QWidget* parent)
     : QWidget(parent), newest_(std::move(newest)), report_(new LampRow("", 2, this)) {
-  auto* layout = new QGridLayout(this);
-  layout->setContentsMargins(0, 0, 0, 0);
-  layout->setHorizontalSpacing(8);
-  layout->setVerticalSpacing(1);
-  layout->setColumnStretch(1, 1);
-  layout->addWidget(new QLabel("<b>Automatic injection</b>", this), 0, 0, 1, 2);
+  QGridLayout* layout = boxLayout(this, "Automatic injection");
   start_ = std::make_unique<OfferRow>("Start", 2, this, layout, 1, [this] { press(); });
   cancel_ = new OfferButton("Cancel", this, [this] {
     if (runner_ && running_) runner_->cancel();

@@ -13,11 +13,11 @@
 namespace microinjection {
 namespace {
 
-/// `config.operator_name` stays empty where the session is not scored. Returns the values that are no numbers.
+/// `config.trainee` stays empty where the session is not scored. Returns the values that are no numbers.
 std::string readTraining(const Bus& bus, TrainingConfig& config) {
   SessionParameters parameters(bus, "/session_recorder/training");
-  config.operator_name = parameters.text("operator");
-  if (config.operator_name.empty()) return "";
+  config.trainee = parameters.text("trainee");
+  if (config.trainee.empty()) return "";
   if (const std::string force = parameters.text("force"); !force.empty()) config.force = force;
   if (const std::string punctures = parameters.text("punctures"); !punctures.empty()) config.punctures = punctures;
   const auto read = [&parameters](const char* key, auto& value) {
@@ -57,7 +57,7 @@ void ScoreBox::start(const Bus& bus, SessionLink& link) {
   const std::string error = readTraining(bus, config);
   // A score against another reference than the recorder's would be a wrong one.
   if (!error.empty()) text_->setText(QString::fromStdString(error));
-  if (config.operator_name.empty() || !error.empty()) return;
+  if (config.trainee.empty() || !error.empty()) return;
   log_ = std::make_unique<TrainingLog>(config);
   link.onRow([this](const SessionTable::Row& row) { log_->add(row); });
 }
@@ -65,7 +65,7 @@ void ScoreBox::start(const Bus& bus, SessionLink& link) {
 void ScoreBox::refresh() {
   if (!log_) return;
   const TrainingScore score = log_->score();
-  text_->setText(QString::fromStdString(log_->config().operator_name + ": " + scoreText(score)));
+  text_->setText(QString::fromStdString(log_->config().trainee + ": " + scoreText(score)));
   const auto margins = scoreMargins(score, log_->config().task);
   for (std::size_t i = 0; i < rows_.size(); ++i) rows_[i]->display(margins[i]);
 }

@@ -2,11 +2,11 @@
 
 #include <std_srvs/Trigger.h>
 
-#include <QGridLayout>
 #include <QHBoxLayout>
 #include <QLabel>
 
 #include "base/parse_number.h"
+#include "rviz/box_layout.h"
 
 namespace microinjection {
 namespace {
@@ -39,12 +39,7 @@ SensorBox::SensorBox(QWidget* parent)
       along_(new NumberField(kLargestForce, 1, this)),
       across_(new NumberField(kLargestForce, 1, this)),
       report_(new LampRow("", 2, this)) {
-  auto* layout = new QGridLayout(this);
-  layout->setContentsMargins(0, 0, 0, 0);
-  layout->setHorizontalSpacing(8);
-  layout->setVerticalSpacing(1);
-  layout->setColumnStretch(1, 1);
-  layout->addWidget(new QLabel("<b>Force sensor</b>", this), 0, 0, 1, 2);
+  QGridLayout* layout = boxLayout(this, "Force sensor");
   int line = 1;
   for (const SensorTask task : kSensorTasks) {
     rows_.emplace_back(QString::fromStdString(offer(task, {}).label), 1, this, layout, line++,

@@ -11,7 +11,7 @@ namespace microinjection {
 namespace {
 
 constexpr double kFresh = 0.2;         // s, of a measured force in the plot
-constexpr double kOld = 2;             // s, of what is shown of twin and injector
+constexpr double kOld = 2;             // s, of what is shown of estimator, injector and hindrance
 constexpr double kImplausible = 1e-2;  // N and m: what is beyond is no force or depth of a cell
 
 constexpr char kController[] = "/injection_controller";
@@ -40,6 +40,7 @@ SessionLink::SessionLink(Bus& bus, std::function<std::optional<Pose>()> pipette)
   subscribe("cell/estimate", &SessionLink::onEstimate);
   subscribe("force_sensor/measured_cf", &SessionLink::onMeasured);
   subscribe("injector/state", &SessionLink::onInjector);
+  subscribe("/session/readiness", &SessionLink::onReadiness);
   subscribe("/diagnostics", &SessionLink::onDiagnostics);
 }
 
@@ -86,6 +87,7 @@ SessionView SessionLink::session() const {
   SessionView view = session_;
   // What is sent before is lost.
   view.listens = commands_.isSubscribedBy(kController);
+  if (sessionNow(bus_) - hindrance_.at < kOld) view.hindrance = hindrance_.value;
   if (heard_at_ && sessionNow(bus_) - *heard_at_ < kControllerSilence) return view;
   view.operating.reset();
   view.injection.reset();
@@ -105,6 +107,17 @@ std::optional<CellEstimateView> SessionLink::estimate() const {
 
 std::optional<InjectorView> SessionLink::injector() const {
   return sessionNow(bus_) - injector_.at < kOld ? injector_.value : std::nullopt;
+}
+
+/// What only informs is what the operator has ordered.
+void SessionLink::onReadiness(const cell_microinjection::Readiness& message) {
+  hindrance_ = {std::nullopt, sessionNow(bus_)};
+  for (const auto& hindrance : message.hindrances) {
+    if (hindrance.level == cell_microinjection::Hindrance::OK) continue;
+    hindrance_.value = HindranceView{hindrance.node, hindrance.reason, hindrance.remedy,
+                                     hindrance.level == cell_microinjection::Hindrance::ERROR};
+    break;
+  }
 }
 
 void SessionLink::onOperating(const cell_microinjection::OperatingState& message) {

@@ -7,6 +7,7 @@
 #include <cell_microinjection/InjectorState.h>
 #include <cell_microinjection/LoopState.h>
 #include <cell_microinjection/OperatingState.h>
+#include <cell_microinjection/Readiness.h>
 #include <cell_microinjection/StringStamped.h>
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <geometry_msgs/WrenchStamped.h>
@@ -30,7 +31,7 @@ namespace microinjection {
 /// What the console hears of a session, and its one publisher.
 ///
 /// In:  /controller/operating_state, /controller/injection_state, /controller/loop_state,
-///      /cell/state, /cell/estimate, /force_sensor/measured_cf, /injector/state, /diagnostics
+///      /cell/state, /cell/estimate, /force_sensor/measured_cf, /injector/state, /session/readiness, /diagnostics
 /// Out: /controller/state_command (StringStamped); with a stop, the cancels of the actions that move
 ///      the needle through vision (kStoppedActions)
 ///
@@ -73,6 +74,7 @@ class SessionLink {
   void onEstimate(const cell_microinjection::CellEstimate& message);
   void onMeasured(const geometry_msgs::WrenchStamped& message);
   void onInjector(const cell_microinjection::InjectorState& message);
+  void onReadiness(const cell_microinjection::Readiness& message);
   void onDiagnostics(const diagnostic_msgs::DiagnosticArray& message);
   void readSettings();
 
@@ -96,6 +98,7 @@ class SessionLink {
   int punctures_ = 0;  ///< detected by the controller
   Received<std::optional<CellEstimateView>> estimate_;
   Received<std::optional<InjectorView>> injector_;
+  Received<std::optional<HindranceView>> hindrance_;
   DeviceLamps lamps_;
   ForceHistory history_;
   bool grown_ = false;

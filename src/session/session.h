@@ -9,17 +9,31 @@
 
 namespace microinjection {
 
-/// Where each key of a session was set: a file and its line, or an argument.
+/// Where each key of a session was set: a file and its line, or an argument. An error names it: a session may be made
+/// of several files, and a key may be set in each of them.
 struct SessionPlaces {
-  std::string source;  ///< the session's file
-  std::map<std::string, std::string> of;
+  std::string source;                     ///< the session's file
+  std::map<std::string, std::string> of;  ///< place by key; keys at their defaults are absent
 
   /// Of a key such as "rig/name", or "overrides/display/enlargement"; of one at its default, the session's file.
   std::string at(const std::string& key) const;
 };
 
 /// A session: what takes part in it, and what of it is to differ from its configuration. It is the content of a file
-/// config/sessions/NAME.yaml, whose keys are the members here; config/sessions/default.yaml describes each. Once
+/// config/sessions/NAME.yaml, whose keys are the members here; config/sessions/default.yaml describes each of them.
+///
+///     the defaults below <-- base of lab.yaml <-- lab.yaml <-- arguments KEY:=VALUE      each over the ones before
+///                                                            |
+///                                         checkSession(): what does not go together
+///                                                            |
+///                   Session --> planOf() --> SessionPlan --> session.launch, `session`, simulate, tests
+///
+/// Launch arguments, which a session was made of before, cannot be kept with a record or shared in a lab, nobody but
+/// roslaunch can read them, and it can hardly say which of them exclude each other. With a file, a strict reader and
+/// a room without ROS a session is refused as a whole, with a line for each error, before any node starts; and the
+/// same file runs live, in `simulate` and in a test.
+///
+/// In a file, `auto` stands for a value that follows from other keys, so that another rig or hand takes one key. Once
 /// loaded, all paths are absolute, all values go together, and `auto` is left only where a comment names it.
 struct Session {
   static constexpr int kVersion = 1;  ///< of the files
@@ -51,8 +65,8 @@ struct Session {
     std::string operator_present = "auto";  ///< external: operator_present in that namespace
   };
   struct Hand {
-    std::string device = "operator";  ///< operator, none or a name of config/haptic
-    std::string config;               ///< path of the device's parameters; empty with operator and none
+    std::string device = "virtual_hand";  ///< virtual_hand, none or a name of config/haptic
+    std::string config;                   ///< path of the device's parameters; empty with virtual_hand and none
     Topics topics;
     std::string position_type = "auto";  ///< pose or transform; auto: that of config
     bool require_operator = true;
@@ -60,7 +74,7 @@ struct Session {
     bool wait_for_go = false;  ///< the virtual hand rests until it is told to begin
 
     bool present() const { return device != "none"; }
-    bool isOperator() const { return device == "operator"; }
+    bool isVirtual() const { return device == "virtual_hand"; }
   };
   struct Force {
     std::string controller = "predicted";  ///< predicted or measured
@@ -95,11 +109,11 @@ struct Session {
     std::string training;  ///< path of the score's references
   };
 
-  std::string package;  ///< folder with config and urdf
-  std::string cell;     ///< path of the scene that the session believes in
-  std::string hidden;   ///< path of the scene under the needle; empty: that of `cell`
-  std::string model = "auto";
-  bool twin = false;
+  std::string package;         ///< folder with config and urdf
+  std::string cell;            ///< path of the scene that the session believes in
+  std::string hidden;          ///< path of the scene under the needle; empty: that of `cell`
+  std::string model = "auto";  ///< auto (the cheapest that meets the scene's requirements), surrogate, live or explicit
+  bool estimator = false;
   Rig rig;
   Sensor sensor;
   std::string injector = "simulated";

@@ -13,7 +13,7 @@ class Check {
 
   void run() {
     checkHidden();
-    checkTwin();
+    checkEstimator();
     checkForces();
     checkInjection();
     checkCamera();
@@ -36,18 +36,18 @@ class Check {
       refuse("hidden", session_.hidden, rig(), "with sim or an emulated rig; a real one has its own cell");
   }
 
-  void checkTwin() {
-    if (!session_.twin) return;
+  void checkEstimator() {
+    if (!session_.estimator) return;
     if (!hasSensor() && session_.camera.source == "none") {
       refuse(
-          "twin", "true", "sensor/source = none and camera/source = none",
+          "estimator", "true", "sensor/source = none and camera/source = none",
           "with a force sensor, which shows modulus and height of the cell, or with a camera, which shows the height");
     }
     if (session_.rig.real() && !hasSensor()) {
-      refuse("twin", "true", "sensor/source = none and " + rig(),
+      refuse("estimator", "true", "sensor/source = none and " + rig(),
              "with a force sensor on a real rig: an image does not show the puncture");
     } else if (session_.rig.real() && session_.force.controller != "measured") {
-      refuse("twin", "true", "force/controller = " + session_.force.controller + " and " + rig(),
+      refuse("estimator", "true", "force/controller = " + session_.force.controller + " and " + rig(),
              "with measured on a real rig, whose puncture the predicted force does not show");
     }
   }

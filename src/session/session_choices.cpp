@@ -23,7 +23,7 @@ Names withFirst(const Names& first, const Names& more) { return withEmulated(fir
 }  // namespace
 
 SessionChoices::SessionChoices(const std::string& package)
-    : models{"auto", "prepared", "live", "explicit"},
+    : models{"auto", "surrogate", "live", "explicit"},
       sensors{"auto", "simulated", "serial", "topic", "none"},
       position_types{"auto", "pose", "transform"},
       controller_forces{"predicted", "measured"},
@@ -39,7 +39,7 @@ SessionChoices::SessionChoices(const std::string& package)
   devices.erase(std::remove_if(devices.begin(), devices.end(), is_other), devices.end());
   rigs = withEmulated({"sim"}, devices, {kExternal});
   injectors = withEmulated({"auto", "simulated"}, namesIn(package, "config/injectors"), {"serial", "none"});
-  hands = withFirst({"operator", "none"}, namesIn(package, "config/haptic"));
+  hands = withFirst({"virtual_hand", "none"}, namesIn(package, "config/haptic"));
   consoles = withFirst({"none"}, namesIn(package, "config/console"));
 }
 

@@ -38,7 +38,19 @@ struct ForeignProcess {
   std::string view;  ///< of rviz: its configuration, which becomes a file that follows the arguments
 };
 
-/// What runs in a session.
+/// What runs in a session: every node with all of its parameters, the frames and the processes of others. planOf()
+/// makes it of a Session, whoever is going to run it:
+///
+///     config/NODE.yaml, session's keys, device's file, fit to the cell, overrides: each over the ones before
+///                                         |
+///     Session ---------> planOf() --> SessionPlan --> session.launch: a process for each      (SessionClock::kWall)
+///                                                 --> Executive: all in one process           (SessionClock::kVirtual)
+///
+/// Launch files could decide the same with `if` and `eval`. But then what takes part, and with which parameters,
+/// would be known to roslaunch alone; a session on virtual time and a test would need a second description, and
+/// nothing would keep the two alike. A plan is plain data instead: tests look into it, the program `session` writes
+/// it as a launch file (session/launch_file.h), and both ways of running start from the same one. It has the
+/// parameters of config/, too, so that a plan shows what each node gets.
 struct SessionPlan {
   std::vector<NodePlan> nodes;  ///< in the order of their start
   YAML::Node parameters;        ///< global ones, by name without the first slash: robot_description
@@ -61,7 +73,8 @@ enum class SessionClock {
   kVirtual  ///< an emulated rig is inside the node micromanipulator, which steps with it
 };
 
-/// Throws ConfigError with a line for everything that does not fit.
+/// The plan of a session that was loaded (Session::load), for a clock. Reads the files that the session names.
+/// @throws ConfigError with a line for everything that does not fit
 SessionPlan planOf(const Session& session, SessionClock clock);
 
 }  // namespace microinjection

@@ -136,7 +136,7 @@ class Planner {
         plan_.nodes.back().remaps[std::string("/cell/") + topic] = std::string("/true_cell/") + topic;
       plan_.files.push_back(session_.hidden);
     }
-    if (session_.twin) {
+    if (session_.estimator) {
       NodePlan& node = addConfigured("cell_estimator");
       setText(node, "scene", session_.cell);
       if (!servesEstimate()) setFlag(node, "serve", false);
@@ -181,7 +181,7 @@ class Planner {
     NodePlan& bridge = addConfigured("haptic_bridge");
     setText(bridge, "force_source", session_.force.hand);
     setFlag(bridge, "quiet_sensor", session_.sensor.quiet);
-    if (session_.hand.isOperator()) setParameter(bridge.parameters, "timeouts/hand_unchanged", integerValue(0));
+    if (session_.hand.isVirtual()) setParameter(bridge.parameters, "timeouts/hand_unchanged", integerValue(0));
     if (has_link) mergeParameters(bridge.parameters, load(package("config/link.yaml")));
     setText(bridge, "link/scheme", link.scheme);
     if (has_link && !link.emulated) bridge.remaps["/link/hand/received"] = "/link/rig/sent";
@@ -215,8 +215,8 @@ class Planner {
   }
 
   void addHand() {
-    if (session_.hand.isOperator()) {
-      NodePlan& node = addConfigured("operator");
+    if (session_.hand.isVirtual()) {
+      NodePlan& node = addConfigured("virtual_hand");
       setText(node, "motion", session_.hand.motion);
       setFlag(node, "wait_for_go", session_.hand.wait_for_go);
       plan_.files.push_back(session_.hand.motion);
@@ -390,7 +390,7 @@ class Planner {
     setFlag(node, "end_when_done", record.end_when_done);
     if (record.trainee.empty()) return;
     setParameter(node.parameters, "training", load(record.training));
-    setText(node, "training/operator", record.trainee);
+    setText(node, "training/trainee", record.trainee);
     setText(node, "training/history", record.history);
   }
 

@@ -102,7 +102,7 @@ void readSessionKeys(ConfigReader& reader, const std::string& folder, SessionDra
   section.fileOrName("cell", session.cell, kCells);
   section.fileOrName("hidden", session.hidden, kCells, kNone);
   section.choice("model", session.model, choices.models);
-  section.flag("twin", session.twin);
+  section.flag("estimator", session.estimator);
   readRig(section.section("rig"), draft, choices);
   LayerSection sensor = section.section("sensor");
   sensor.choice("source", session.sensor.source, choices.sensors);
@@ -134,7 +134,7 @@ Session resolved(SessionDraft draft) {
   session.rig.allow_network = draft.allow_network.value_or(modelled);
   setIfAuto(session.sensor.source, modelled ? "simulated" : "serial");
   setIfAuto(session.injector, modelled ? "simulated" : "serial");
-  if (!session.hand.present() || session.hand.isOperator()) session.hand.config.clear();
+  if (!session.hand.present() || session.hand.isVirtual()) session.hand.config.clear();
   setIfAuto(session.hand.config, package + "/config/haptic/" + session.hand.device + ".yaml");
   setIfAuto(session.force.hand, session.force.controller);
   setIfAuto(session.injection.mode, session.hand.present() ? "manual" : "automatic");

@@ -1,4 +1,5 @@
 """Pictures of every operator's console with a session that runs, on two sizes of screen: what to look at after a change."""
+import contextlib
 import os
 import sys
 import time
@@ -14,9 +15,9 @@ from session_operator import SessionOperator
 ROOT = Path(os.environ.get('MICROINJECTION_ROOT') or Path(__file__).resolve().parents[2])
 SIZES = ((1280, 800), (1920, 1080))  # px
 PATIENCE = 100  # s of wall time, for rviz to come up, and for the moment of the picture
-SETTLE = {'operator': 1.5, 'none': 6}  # s, for rviz to draw it: a hand does not rest for long
+SETTLE = {'virtual_hand': 1.5, 'none': 6}  # s, for rviz to draw it: a hand does not rest for long
 STEPPED = {'hand.device': 'none', 'injection.mode': 'semi_automatic'}
-BY_HAND = {'hand.device': 'operator', 'hand.motion': ROOT / 'config/hand_motions/puncture_and_inject.yaml'}
+BY_HAND = {'hand.device': 'virtual_hand', 'hand.motion': ROOT / 'config/hand_motions/puncture_and_inject.yaml'}
 CAMERA = {'camera.source': 'sim'}
 CONSOLES = {'inject': {**STEPPED, **CAMERA}, 'teleoperate': {**BY_HAND, **CAMERA}, 'train': BY_HAND, 'axes': BY_HAND,
             'paper': STEPPED, 'calibrate': {'hand.device': 'none', 'injection.mode': 'manual', **CAMERA}}
@@ -26,7 +27,7 @@ def await_moment(session, keys):
     """Until there is something to see. @raises SessionError"""
     session.monitor.go()
     operator = SessionOperator(PATIENCE)
-    if keys['hand.device'] == 'operator':
+    if keys['hand.device'] == 'virtual_hand':
         operator.wait(lambda: session.monitor.phase == 'hold', "the hand's rest in the cell")
     elif keys['injection.mode'] == 'semi_automatic':
         for command, state in (('approach', 'contact'), ('indent', 'punctured')):
@@ -45,6 +46,25 @@ def start_rviz(name, size, logs, environment):
     return Child(['nice', '-n', '5', 'rviz', '-d', str(path)], logs / 'rviz.log', {**os.environ, **environment})
 
 
+@contextlib.contextmanager
+def seen_session(logs, size, keys, start_view):
+    """A session with rviz on a screen of its own, until the block ends.
+    @param start_view  (environment of the screen) -> Child
+    @returns (DemoSession, Screen)
+    @raises SessionError"""
+    with contextlib.ExitStack() as stack:
+        screen = Screen(logs / 'xvfb.log', size)
+        stack.callback(screen.close)
+        session = DemoSession(ROOT / 'launch/session.launch', logs, keys)
+        stack.callback(session.stop)
+        session.wait_ready()
+        view = start_view(screen.environment)
+        stack.callback(view.stop, 10)
+        if not wait_until(lambda: session.monitor.has_subscriber('/viz/markers'), PATIENCE):
+            raise SessionError(f'rviz does not start; {view.log} ends with\n{view.tail(8)}')
+        yield session, screen
+
+
 def picture(name, size, out, logs):
     """@raises SessionError"""
     logs = logs / f'{name}_{size[0]}'
@@ -53,26 +73,13 @@ def picture(name, size, out, logs):
     if name == 'train':
         keys.update({'record.folder': logs / 'record', 'record.bag': 'false', 'record.trainee': 'ada',
                      'record.history': logs / 'training.csv'})
-    screen = Screen(logs / 'xvfb.log', size)
-    session = view = None
-    try:
-        session = DemoSession(ROOT / 'launch/session.launch', logs, keys)
-        session.wait_ready()
-        view = start_rviz(name, size, logs, screen.environment)
-        if not wait_until(lambda: session.monitor.has_subscriber('/viz/markers'), PATIENCE):
-            raise SessionError(f'rviz does not start; {view.log} ends with\n{view.tail(8)}')
+    with seen_session(logs, size, keys, lambda environment: start_rviz(name, size, logs, environment)) as (session, screen):
         await_moment(session, keys)
         time.sleep(SETTLE[keys['hand.device']])
         path = out / f'{name}_{size[0]}x{size[1]}.png'
         if not screenshot.take(path, env={**os.environ, **screen.environment}):
             raise SessionError('there is no picture of the screen')
         return path
-    finally:
-        if view:
-            view.stop(10)
-        if session:
-            session.stop()
-        screen.close()
 
 
 def main():

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""Runs a session: the virtual operator approaches, touches, indents, punctures, injects and retracts.
+"""Runs a session: the virtual hand approaches, touches, indents, punctures, injects and retracts.
 
 Leaves in the output folder: force_depth.csv and force_depth.png (force against depth, and the course of the
 injection), scene.png (rviz while the needle rests in the dent), session.bag, summary.yaml (rates and latency),
-force_error.csv (against the full solution along the same way in, up to the puncture), with --operator training.yaml
+force_error.csv (against the full solution along the same way in, up to the puncture), with --trainee training.yaml
 and training.png, and log/. Exit code 1 when one of them is missing (but the last) or a node died, or when the default
 motion in the default cell ended without puncture, injection or withdrawal.
 """
@@ -29,10 +29,10 @@ MOTION = ROOT / 'config' / 'hand_motions' / 'puncture_and_inject.yaml'
 OUT = ('idle', 'approach')  # states of an injection whose needle is out of the cell
 RESULTS = ('force_depth.csv', 'force_depth.png', 'scene.png', 'session.bag', 'summary.yaml')
 
-TRAINING = ('training.yaml', 'training.png')  # with --operator
+TRAINING = ('training.yaml', 'training.png')  # with --trainee
 
 RVIZ_TIMEOUT = 90    # s of wall time, for rviz to come up
-PHASE_TIMEOUT = 300  # s, for a phase of the operator
+PHASE_TIMEOUT = 300  # s, for a phase of the motion
 SETTLE = 0.8         # s, for rviz to draw what the nodes have just said
 
 
@@ -46,21 +46,21 @@ def parse_arguments():
     parser.add_argument('--out', type=Path, default=ROOT / 'out' / 'demo', help='folder of the results (%(default)s)')
     parser.add_argument('--cell', default=CELL,
                         help='name in config/cells, or path of a scene file (%(default)s)')
-    parser.add_argument('--model', choices=('auto', 'prepared', 'live', 'explicit'), default='auto',
-                        help='prepared: converged force, of a family or made ready first (minutes, once); live: P1 tetrahedra, at '
-                        'once; auto: prepared where the cell can be')
+    parser.add_argument('--model', choices=('auto', 'surrogate', 'live', 'explicit'), default='auto',
+                        help='surrogate: converged force, of a family or made ready first (minutes, once); live: P1 tetrahedra, at '
+                        'once; auto: surrogate where the cell can be')
     parser.add_argument('--clock', choices=('wall', 'virtual'), default='wall',
                         help='wall: live nodes on wall time; virtual: all nodes in one process, many times faster, the same '
                         'bytes in each run, without rviz')
     parser.add_argument('--rig', default='sim',
                         help='sim, a real one: eppendorf, mp285, scientifica, sensapex, transferman, zaber; or emulated_ before '
                         'its name (%(default)s)')
-    parser.add_argument('--haptic', choices=('operator', 'external', 'none'), default='operator',
-                        help='who moves the hand; a session without the operator ends with Ctrl-C')
+    parser.add_argument('--haptic', choices=('virtual_hand', 'external', 'none'), default='virtual_hand',
+                        help='who moves the hand; a session without the virtual hand ends with Ctrl-C')
     parser.add_argument('--motion', type=Path, default=MOTION,
-                        help="file of the operator's hand motion (%(default)s)")
-    parser.add_argument('--operator', default='', help='who trains: the session is scored, and compared with the '
-                        'operator\'s earlier ones in training.png')
+                        help="file of the virtual hand's motion (%(default)s)")
+    parser.add_argument('--trainee', default='', help='who trains: the session is scored, and compared with the '
+                        'trainee\'s earlier ones in training.png')
     parser.add_argument('--no-rviz', action='store_true', help='no rviz and no scene.png')
     parser.add_argument('--no-judge', action='store_true',
                         help='do not compare with the full solution afterwards (a minute or two)')
@@ -105,7 +105,7 @@ class Demo:
             return
         say('the off-line stage: takes minutes the first time, for a cell of no family')
         if not full_solution.prepare(self._scene()):
-            if self._arguments.model == 'prepared':
+            if self._arguments.model == 'surrogate':
                 raise DemoError('the cell cannot be prepared, see above')
             say('the cell cannot be prepared (see above): it will be live')
             self._arguments.model = 'live'
@@ -114,7 +114,7 @@ class Demo:
         """The session's keys that differ from config/sessions/default.yaml."""
         return {'cell': self._scene(), 'model': self._arguments.model, 'rig.name': self._arguments.rig,
                 'hand.device': self._arguments.haptic, 'hand.motion': self._arguments.motion.resolve(),
-                'record.folder': self._out, 'record.trainee': self._arguments.operator}
+                'record.folder': self._out, 'record.trainee': self._arguments.trainee}
 
     def simulate(self):
         say('simulating the session on virtual time')
@@ -215,7 +215,7 @@ class Demo:
         if csv.is_file() and not self._arguments.no_judge:
             self._judge(csv)
         wanted = [name for name in RESULTS if not (name == 'scene.png' and self._arguments.no_rviz)]
-        wanted += TRAINING[:1] if self._arguments.operator else ()
+        wanted += TRAINING[:1] if self._arguments.trainee else ()
         missing = [name for name in wanted if not (self._out / name).is_file() or not (self._out / name).stat().st_size]
         if missing:
             raise DemoError(f'missing or empty in {self._out}: {", ".join(missing)}; see {self._logs}')
@@ -259,7 +259,7 @@ def interrupt(number, _frame):
 def run(demo, arguments):
     demo.prepare()
     demo.start()
-    if arguments.haptic == 'operator':
+    if arguments.haptic == 'virtual_hand':
         demo.follow_operator()
     else:
         demo.follow_hand()

@@ -49,7 +49,7 @@ def training(path):
     rows = [('measure', '', 'value', 'reference', 'points', 'of')]
     rows += [(name, '', *(f'{row[key]:.3g}' for key in ('value', 'reference', 'points', 'of')))
              for name, row in told['measures'].items()]
-    return '\n'.join([f'Training of {told["operator"]}: {worth}'] + _table(rows)) + '\n'
+    return '\n'.join([f'Training of {told["trainee"]}: {worth}'] + _table(rows)) + '\n'
 
 
 def text(path):

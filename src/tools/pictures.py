@@ -15,9 +15,8 @@ from pathlib import Path
 
 import console_pictures
 import screenshot
-from demo_session import DemoSession, SessionError
+from demo_session import SessionError
 from processes import Child, wait_until
-from screen import Screen
 
 ROOT = Path(os.environ.get('MICROINJECTION_ROOT') or Path(__file__).resolve().parents[2])
 SIZE = (1280, 800)    # px
@@ -131,26 +130,18 @@ def record(session, recording):
 def console(out, logs):
     say('a session with the console')
     os.environ.pop('DISPLAY', None)
-    screen = Screen(logs / 'xvfb.log', SIZE)
-    session = view = None
-    try:
-        session = DemoSession(ROOT / 'launch/session.launch', logs, {
-            'hand.device': 'none', 'injection.mode': 'semi_automatic', 'camera.source': 'sim', 'display.markers': 'false',
+    keys = {'hand.device': 'none', 'injection.mode': 'semi_automatic', 'camera.source': 'sim', 'display.markers': 'false',
             'cell': 'mouse_oocyte_injection',
-            **{f'overrides.injection_controller.motion.{key}': value for key, value in SLOW.items()}})
-        session.wait_ready()
-        view = Child(['roslaunch', str(ROOT / 'launch/session.launch'), 'console:=inject', 'only:=display rviz'], logs / 'rviz.log', {**os.environ, **screen.environment})
-        if not wait_until(lambda: session.monitor.has_subscriber('/viz/markers'), PATIENCE):
-            raise PicturesError(f'rviz does not start; {view.log} ends with\n{view.tail(8)}')
+            **{f'overrides.injection_controller.motion.{key}': value for key, value in SLOW.items()}}
+    command = ['roslaunch', str(ROOT / 'launch/session.launch'), 'console:=inject', 'only:=display rviz']
+
+    def start_view(environment):
+        return Child(command, logs / 'rviz.log', {**os.environ, **environment})
+
+    with console_pictures.seen_session(logs, SIZE, keys, start_view) as (session, screen):
         session.monitor.go()
         recording = Recording(Path(tempfile.mkdtemp(dir=logs)), screen.environment)
         record(session, recording)
-    finally:
-        if view:
-            view.stop(10)
-        if session:
-            session.stop()
-        screen.close()
     recording.animate(logs / 'injection.gif')
     shutil.copyfile(recording.last_of('indent'), out / 'console.png')
     shutil.copyfile(logs / 'injection.gif', out / 'injection.gif')

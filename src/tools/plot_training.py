@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Plots an operator's training sessions, one beside the other: score by its shares, and each measure.
+"""Plots a trainee's training sessions, one beside the other: score by its shares, and each measure.
 
-    plot_training.py HISTORY_CSV PNG [--operator NAME]
+    plot_training.py HISTORY_CSV PNG [--trainee NAME]
 """
 import argparse
 import csv
@@ -26,16 +26,16 @@ FEWEST_SESSIONS = 4  # that the axes are wide enough for
 
 
 def read(path, name=None):
-    """Returns (operator, rows of that operator in the order of the file). Without a name: the operator of the last row.
-    @raises ValueError when there is no session of that operator."""
+    """Returns (trainee, rows of that trainee in the order of the file). Without a name: the trainee of the last row.
+    @raises ValueError when there is no session of that trainee."""
     with open(path, encoding='utf-8', newline='') as file:
         rows = list(csv.DictReader(file))
     if not rows:
         raise ValueError(f'{path}: no sessions')
-    name = name or rows[-1]['operator']
-    own = [row for row in rows if row['operator'] == name]
+    name = name or rows[-1]['trainee']
+    own = [row for row in rows if row['trainee'] == name]
     if not own:
-        raise ValueError(f'{path}: no sessions of {name}; there are: {", ".join(sorted({r["operator"] for r in rows}))}')
+        raise ValueError(f'{path}: no sessions of {name}; there are: {", ".join(sorted({r["trainee"] for r in rows}))}')
     return name, own[-MOST_SESSIONS:]
 
 
@@ -107,11 +107,11 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('history', type=Path)
     parser.add_argument('png', type=Path)
-    parser.add_argument('--operator', help='whose sessions; default: of the last row')
+    parser.add_argument('--trainee', help='whose sessions; default: of the last row')
     arguments = parser.parse_args()
     try:
         check_outputs({'HISTORY': arguments.history}, {'PNG': arguments.png})
-        plot(arguments.history, arguments.png, arguments.operator)
+        plot(arguments.history, arguments.png, arguments.trainee)
     except (OSError, ValueError, KeyError) as error:
         parser.exit(1, f'plot_training.py: {error}\n')
 

@@ -1,4 +1,4 @@
-"""What the demo sees of a running session: the operator's phase and the state of the cell, and a line about it."""
+"""What the demo sees of a running session: the virtual hand's phase and the state of the cell, and a line about it."""
 import sys
 import time
 
@@ -16,7 +16,7 @@ class SessionMonitor:
         self.phase_began = time.monotonic()
         self.state = self.injection = None
         self.punctures, self.volume = 0, 0.0  # felt; m^3, given
-        self._subscribers = [rospy.Subscriber('/operator/phase', StringStamped, self._on_phase, queue_size=10),
+        self._subscribers = [rospy.Subscriber('/virtual_hand/phase', StringStamped, self._on_phase, queue_size=10),
                              rospy.Subscriber('/cell/state', CellState, self._on_state, queue_size=1),
                              rospy.Subscriber('/controller/injection_state', InjectionStatus, self._on_injection,
                                               queue_size=10)]
@@ -44,7 +44,7 @@ class SessionMonitor:
         return any(name == topic and (node in nodes if node else nodes) for name, nodes in subscriptions)
 
     def go(self):
-        """Lets the waiting operator begin."""
+        """Lets the waiting virtual hand begin."""
         self._rospy.set_param('/session/go', True)
 
     def close(self):

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "rig/sensor/stream.h"
+#include "hardware/sensor/stream.h"
 
 namespace microinjection {
 namespace {

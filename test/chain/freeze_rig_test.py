@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """The driver of a real rig is frozen (SIGSTOP) or killed while the needle indents a cell: its stop guard stops the device.
 Live, with an emulated rig that follows set-points and one that only moves, as a program of its own, which tells where the
-device truly is. The guards of all rigs are in test/rig/devices."""
+device truly is. The guards of all rigs are in test/hardware/devices."""
 
 import os
 import signal

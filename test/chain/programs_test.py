@@ -26,7 +26,7 @@ GOOD = {  # what each node cannot do without
     "display": {}, "focus": {}, "force_sensor": {}, "force_watchdog": {}, "haptic_bridge": {}, "haptic_device": {"kind": "joy"},
     "image_recorder": {"output_dir": f"{FOLDER.name}/images"}, "injection_controller": {}, "injector": {}, "keyboard_hand": {},
     "link_emulator": {}, "micromanipulator": {}, "microscope": {}, "notebook": {"file": f"{FOLDER.name}/notebook.csv"},
-    "operator": {"motion": PACKAGE / "config/hand_motions/indent_and_retract.yaml"},
+    "virtual_hand": {"motion": PACKAGE / "config/hand_motions/indent_and_retract.yaml"},
     "readiness": {}, "session_recorder": {"output_dir": f"{FOLDER.name}/record"}, "teleoperation_follower": {}, "touch": {}, "vision": {},
     "visual_servo": {}}
 SILENT = {"force_watchdog"}  # has no diagnostics

@@ -24,7 +24,7 @@ PHASES = {phase for phase, *_ in PATH}
 # s, in place of the time-outs: a machine that stalls must hold neither hand nor needle.
 PATIENT = {"haptic_bridge": {"timeouts": {key: 1.0 for key in ("hand", "needle", "predicted", "measured", "controller")}},
            "injection_controller": {"input_timeout": 1.0}, "micromanipulator": {"command_timeout": 1.0},
-           "cell_simulator": {"needle_timeout": 1.0}, "force_sensor": {"input_timeout": 1.0}, "operator": {"force_timeout": 1.0},
+           "cell_simulator": {"needle_timeout": 1.0}, "force_sensor": {"input_timeout": 1.0}, "virtual_hand": {"force_timeout": 1.0},
            "injector": {"command_timeout": 5.0, "pulse_timeout": 2.0}}
 TOPICS = {"/needle/measured_cp", "/haptic/measured_cp", "/haptic/servo_cf", "/cell/predicted_cf", "/force_sensor/measured_cf",
           "/controller/injection_state", "/injector/state"}
@@ -42,7 +42,7 @@ class SessionLiveTest(unittest.TestCase):
                                                    for waypoint in PATH]}))
         session = cls.folder / "session.yaml"
         session.write_text(yaml.safe_dump({
-            "version": 1, "cell": "mouse_oocyte_injection", "hand": {"device": "operator", "motion": "motion.yaml"},
+            "version": 1, "cell": "mouse_oocyte_injection", "hand": {"device": "virtual_hand", "motion": "motion.yaml"},
             "display": {"markers": False}, "overrides": PATIENT,
             "record": {"folder": str(cls.out), "end_when_done": True, "trainee": "ada", "history": "history.csv"}}))
         launched = subprocess.Popen(["roslaunch", "cell_microinjection", "session.launch", f"session:={session}"],
@@ -116,11 +116,11 @@ class SessionLiveTest(unittest.TestCase):
 
     def test_the_trainee_is_scored(self):
         told = self.told("training.yaml")
-        self.assertEqual((told["operator"], told["outcome"]), ("ada", "complete"))
+        self.assertEqual((told["trainee"], told["outcome"]), ("ada", "complete"))
         self.assertGreater(told["score"], 0)
         with open(self.folder / "history.csv", encoding="utf-8") as file:
             history = list(csv.DictReader(file))
-        self.assertEqual([row["operator"] for row in history], ["ada"])
+        self.assertEqual([row["trainee"] for row in history], ["ada"])
         self.assertEqual((self.out / "training.png").read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
 
 

@@ -42,7 +42,7 @@ class PrepareFamily : public CommandTest {
   /// Lays the axis' nodes into the cache, as their tasks would.
   static void storeAxis(bool solved) {
     const std::string family = homogeneous().description();
-    const std::string folder = cacheDirectory("prepared") + "/" + contentHash(family + " axis");
+    const std::string folder = cacheDirectory("surrogates") + "/" + contentHash(family + " axis");
     fs::create_directories(folder);
     for (int node = 0; node < axisForceGrid(homogeneous()).size(); ++node) {
       ByteWriter writer;

@@ -46,9 +46,9 @@ class PrepareCommand : public testing::Test {
     return status == std::string::npos ? -1 : std::atoi(said_.c_str() + status + 7);
   }
 
-  static std::string preparedPath() {
+  static std::string surrogatePath() {
     const Scene scene = loadScene(kScene);
-    return preparedFile(scene, Preparation::plan(scene, PreparationRange::standard(scene)));
+    return surrogateFile(scene, SurrogatePlan::plan(scene, SurrogateRange::standard(scene)));
   }
 
   /// The solved paths of all cells in the cache.
@@ -70,30 +70,30 @@ class PrepareCommand : public testing::Test {
 
 TEST_F(PrepareCommand, AFullDiskIsNoticedBeforeAPathIsSolved) {
   EXPECT_EQ(prepare(full_disk_, scene_), 2) << said_;
-  EXPECT_TRUE(said(fs::path(preparedPath()).parent_path().string())) << said_;
+  EXPECT_TRUE(said(fs::path(surrogatePath()).parent_path().string())) << said_;
   EXPECT_TRUE(said("cannot be written: File too large")) << said_;
   EXPECT_FALSE(said("paths")) << said_;
 }
 
 TEST_F(PrepareCommand, AFolderThatCannotBeMadeIsNoticedBeforeAPathIsSolved) {
   EXPECT_EQ(prepare("XDG_CACHE_HOME=/dev/null ", scene_), 2) << said_;
-  EXPECT_TRUE(said("/dev/null/cell_microinjection/prepared/")) << said_;
+  EXPECT_TRUE(said("/dev/null/cell_microinjection/surrogates/")) << said_;
   EXPECT_TRUE(said("cannot be written: Not a directory")) << said_;
   EXPECT_FALSE(said("paths")) << said_;
 }
 
 TEST_F(PrepareCommand, ADirectoryInThePlaceOfTheDataIsNoticedBeforeAPathIsSolved) {
-  fs::create_directories(preparedPath());
+  fs::create_directories(surrogatePath());
   EXPECT_EQ(prepare("", scene_), 2) << said_;
-  EXPECT_TRUE(said(preparedPath() + ": cannot be written: it is a directory; remove it")) << said_;
+  EXPECT_TRUE(said(surrogatePath() + ": cannot be written: it is a directory; remove it")) << said_;
 }
 
 /// Ended before it solves by a disk that is full.
 TEST_F(PrepareCommand, DamagedDataAreNamedAndMadeAnew) {
-  writeCacheFile(preparedPath(), "thing", "body");
-  fs::resize_file(preparedPath(), fs::file_size(preparedPath()) - 1);
+  writeCacheFile(surrogatePath(), "thing", "body");
+  fs::resize_file(surrogatePath(), fs::file_size(surrogatePath()) - 1);
   EXPECT_EQ(prepare(full_disk_, scene_), 2) << said_;
-  EXPECT_TRUE(said(preparedPath() + ": is damaged: ")) << said_;
+  EXPECT_TRUE(said(surrogatePath() + ": is damaged: ")) << said_;
   EXPECT_TRUE(said("it is replaced")) << said_;
 }
 

@@ -15,7 +15,7 @@ class SessionCommand : public CommandTest {
 };
 
 TEST_F(SessionCommand, ChecksASessionAndReportsWhatWasFitted) {
-  for (const char* arguments : {"", "default", "injection --check", "default twin:=true cell:="}) {
+  for (const char* arguments : {"", "default", "injection --check", "default estimator:=true cell:="}) {
     const Outcome result = run(arguments);
     EXPECT_EQ(result.status, 0) << arguments << result.err;
     EXPECT_EQ(result.out, "");
@@ -25,12 +25,12 @@ TEST_F(SessionCommand, ChecksASessionAndReportsWhatWasFitted) {
 
 TEST_F(SessionCommand, ReportsAllErrorsALineEach) {
   write("lab.yaml", "version: 1\nrig: {name: lathe}\nhand:\n  motion: nowhere.yaml\n");
-  const Outcome result = run("lab.yaml twin:=perhaps hand.devise=omni --print");
+  const Outcome result = run("lab.yaml estimator:=perhaps hand.devise=omni --print");
   EXPECT_EQ(result.status, 2);
   EXPECT_EQ(result.out, "");
   for (const char* part :
        {"session: /", "lab.yaml, line 2: rig/name = lathe: must be one of: sim", "lab.yaml, line 4: hand/motion",
-        "\nsession: argument: twin = perhaps", "\nsession: argument: hand/devise: unknown key"})
+        "\nsession: argument: estimator = perhaps", "\nsession: argument: hand/devise: unknown key"})
     EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
 }
 
@@ -52,7 +52,7 @@ TEST_F(SessionCommand, WritesALaunchFileAndADigestOfWhatItIsMadeFrom) {
   EXPECT_EQ(run("lab.yaml --launch lab.launch").out, first.out);
   EXPECT_EQ(run("lab.yaml --launch lab.launch --only display").out, first.out);
   EXPECT_EQ(read(directory_ + "lab.launch").find("type=\"injection_controller\""), std::string::npos);
-  EXPECT_NE(run("lab.yaml --launch lab.launch twin:=true").out, first.out);
+  EXPECT_NE(run("lab.yaml --launch lab.launch estimator:=true").out, first.out);
   write("lab.yaml", "version: 1\nbase: injection\ndisplay: {console: train}\n");
   EXPECT_NE(run("lab.yaml --launch lab.launch").out, first.out);
 }

@@ -218,7 +218,7 @@ TEST(ConsoleView, FollowsTheDisplayAndLeadsIt) {
 
 TEST(ConsoleScore, RefusesAReferenceThatIsNoNumber) {
   VirtualSession session({"hand.device:=none"});
-  setParameters(session, "/session_recorder/training", YAML::Load("{operator: Ada, task: {peak_force: much}}"));
+  setParameters(session, "/session_recorder/training", YAML::Load("{trainee: Ada, task: {peak_force: much}}"));
   ConsoleBench bench(session, "train");
   const auto says = [&](const QString& words) {
     for (const ElidedLabel* text : bench.user().shown<ElidedLabel>()) {

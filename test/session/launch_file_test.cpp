@@ -94,7 +94,7 @@ TEST_F(LaunchFileTest, ShowsAConsoleByAFileOfItsOwn) {
 TEST_F(LaunchFileTest, KeepsTextsThatXmlOrYamlWouldRead) {
   const std::string name = "O'Brien & \"<Co>\": #1";
   const XMLElement* recorder = node({"record.folder:=/out", "record.trainee:=" + name}, "session_recorder");
-  EXPECT_EQ(YAML::Load(recorder->FirstChildElement("rosparam")->GetText())["training"]["operator"].Scalar(), name);
+  EXPECT_EQ(YAML::Load(recorder->FirstChildElement("rosparam")->GetText())["training"]["trainee"].Scalar(), name);
 }
 
 /// launch/session.launch: each argument sets the key that its text names.
@@ -123,7 +123,7 @@ TEST_F(LaunchFileTest, TheArgumentsOfSessionLaunchAreKeys) {
 /// A node refuses parameters that it does not know.
 TEST_F(LaunchFileTest, NoParameterOfSessionLaunchIsANodes) {
   ASSERT_EQ(document_.LoadFile((kPackage + "/launch/session.launch").c_str()), tinyxml2::XML_SUCCESS);
-  const Session all = session({"camera.source:=sim", "record.folder:=/out", "twin:=true", "hidden:=mouse_oocyte"});
+  const Session all = session({"camera.source:=sim", "record.folder:=/out", "estimator:=true", "hidden:=mouse_oocyte"});
   const SessionPlan plan = planOf(all, SessionClock::kWall);
   const XMLElement* param = document_.RootElement()->FirstChildElement("param");
   for (; param; param = param->NextSiblingElement("param"))

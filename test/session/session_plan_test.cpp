@@ -33,13 +33,13 @@ class SessionPlanTest : public SessionFolder {
 TEST_F(SessionPlanTest, TheDefaultSession) {
   const SessionPlan session = plan();
   EXPECT_EQ(session.names(), (Names{"micromanipulator", "force_sensor", "cell_simulator", "injector",
-                                    "injection_controller", "haptic_bridge", "operator", "display", "readiness",
+                                    "injection_controller", "haptic_bridge", "virtual_hand", "display", "readiness",
                                     "force_sensor_frame", "robot_state_publisher"}));
   EXPECT_EQ(at(session, "cell_simulator", "scene"), kPackage + "/config/cells/mouse_oocyte_injection.yaml");
   EXPECT_EQ(at(session, "cell_simulator", "needle"), "true");
   EXPECT_EQ(at(session, "cell_simulator", "rate"), "1000");
   EXPECT_EQ(at(session, "micromanipulator", "device/resolution"), "1.0e-9");
-  EXPECT_EQ(at(session, "operator", "wait_for_go"), "false");
+  EXPECT_EQ(at(session, "virtual_hand", "wait_for_go"), "false");
   EXPECT_NE(session.parameters["robot_description"].Scalar().find("<robot"), std::string::npos);
   EXPECT_NE(session.text.find("for a cell of"), std::string::npos);
   EXPECT_EQ(std::count(session.files.begin(), session.files.end(), kPackage + "/config/injector.yaml"), 1);
@@ -49,7 +49,7 @@ TEST_F(SessionPlanTest, TheDefaultSession) {
 TEST_F(SessionPlanTest, TextsAreTexts) {
   const SessionPlan session = plan({"record.folder:=/tmp/1e5", "record.trainee:='007'", "injector:=emulated_femtojet"});
   const auto line = [&](const std::string& node) { return parameterText(session.node(node)->parameters); };
-  EXPECT_NE(line("session_recorder").find("operator: \"007\"\n"), std::string::npos);
+  EXPECT_NE(line("session_recorder").find("trainee: \"007\"\n"), std::string::npos);
   EXPECT_NE(line("cell_simulator").find("needle: \"true\"\n"), std::string::npos);
   EXPECT_NE(line("injector").find("inject: \"901\"\n"), std::string::npos);
   EXPECT_NE(line("injector").find("duration_range: [0.1, 99.9]\n"), std::string::npos);
@@ -84,7 +84,7 @@ TEST_F(SessionPlanTest, AnEmulatedRigIsAProcessOrInside) {
 }
 
 TEST_F(SessionPlanTest, AHiddenCellIsAtTheNeedleAndTheBelievedOneIsServed) {
-  const SessionPlan session = plan({"hidden:=zebrafish_embryo", "camera.source:=sim", "twin:=true"});
+  const SessionPlan session = plan({"hidden:=zebrafish_embryo", "camera.source:=sim", "estimator:=true"});
   EXPECT_EQ(at(session, "true_cell", "scene"), kPackage + "/config/cells/zebrafish_embryo.yaml");
   EXPECT_EQ(session.node("true_cell")->program, "cell_simulator");
   EXPECT_EQ(session.node("true_cell")->remaps.at("/cell/set_parameters"), "/true_cell/set_parameters");
@@ -92,19 +92,20 @@ TEST_F(SessionPlanTest, AHiddenCellIsAtTheNeedleAndTheBelievedOneIsServed) {
   EXPECT_EQ(session.node("microscope")->remaps.at("/cell/state"), "/true_cell/state");
   EXPECT_EQ(session.node("vision")->remaps.at("/cell/state"), "/true_cell/state");
   EXPECT_EQ(session.node("touch")->remaps.at("/cell/contact"), "/true_cell/contact");
-  // Whatever the true cell says, the believed one says under its own name.
+  // Whatever the true cell says, the estimated one says under its own name.
   for (const char* topic : {"predicted_cf", "contact", "state", "set_parameters", "parameters"})
     EXPECT_EQ(session.node("true_cell")->remaps.at(std::string("/cell/") + topic), std::string("/true_cell/") + topic);
   EXPECT_TRUE(session.node("injection_controller")->remaps.empty());
   EXPECT_EQ(at(session, "cell_estimator", "serve"),
-            at(plan({"twin:=true", "sensor.source:=serial"}), "cell_estimator", "serve"));
+            at(plan({"estimator:=true", "sensor.source:=serial"}), "cell_estimator", "serve"));
 }
 
 TEST_F(SessionPlanTest, ATwinDoesNotServeItselfWhatItHasServed) {
-  EXPECT_EQ(at(plan({"twin:=true"}), "cell_estimator", "serve"), "false");
-  EXPECT_NE(at(plan({"twin:=true", "sensor.source:=topic"}), "cell_estimator", "serve"), "false");
-  EXPECT_EQ(at(plan({"twin:=true", "sensor.source:=none", "camera.source:=sim"}), "cell_estimator", "serve"), "false");
-  EXPECT_NE(at(plan({"twin:=true", "sensor.source:=none", "camera.source:=device"}), "cell_estimator", "serve"),
+  EXPECT_EQ(at(plan({"estimator:=true"}), "cell_estimator", "serve"), "false");
+  EXPECT_NE(at(plan({"estimator:=true", "sensor.source:=topic"}), "cell_estimator", "serve"), "false");
+  EXPECT_EQ(at(plan({"estimator:=true", "sensor.source:=none", "camera.source:=sim"}), "cell_estimator", "serve"),
+            "false");
+  EXPECT_NE(at(plan({"estimator:=true", "sensor.source:=none", "camera.source:=device"}), "cell_estimator", "serve"),
             "false");
 }
 
@@ -187,10 +188,10 @@ TEST_F(SessionPlanTest, AnExternalDeviceHasTopicsOfItsOwnForAllNodes) {
 
 TEST_F(SessionPlanTest, NodesOfEachHand) {
   const std::map<std::string, std::pair<bool, bool>> adapter_and_watchdog = {
-      {"operator", {false, false}}, {"none", {false, false}}, {"keyboard", {false, false}},
-      {"external", {false, true}},  {"joy", {true, false}},   {"marker", {true, false}},
-      {"spacenav", {true, false}},  {"omni", {true, true}},   {"geomagic", {true, true}},
-      {"dvrk", {true, true}},       {"falcon", {true, true}}, {"force_dimension", {true, true}}};
+      {"virtual_hand", {false, false}}, {"none", {false, false}}, {"keyboard", {false, false}},
+      {"external", {false, true}},      {"joy", {true, false}},   {"marker", {true, false}},
+      {"spacenav", {true, false}},      {"omni", {true, true}},   {"geomagic", {true, true}},
+      {"dvrk", {true, true}},           {"falcon", {true, true}}, {"force_dimension", {true, true}}};
   for (const auto& [hand, has] : adapter_and_watchdog) {
     const SessionPlan live = plan({"hand.device:=" + hand}),
                       virtual_ = plan({"hand.device:=" + hand}, SessionClock::kVirtual);
@@ -198,7 +199,7 @@ TEST_F(SessionPlanTest, NodesOfEachHand) {
     EXPECT_EQ(takesPart(live, "force_watchdog"), has.second) << hand;
     EXPECT_EQ(takesPart(virtual_, "haptic_device"), has.first) << hand;
     EXPECT_FALSE(takesPart(virtual_, "force_watchdog")) << hand;
-    EXPECT_EQ(takesPart(live, "operator"), hand == "operator") << hand;
+    EXPECT_EQ(takesPart(live, "virtual_hand"), hand == "virtual_hand") << hand;
     EXPECT_EQ(takesPart(live, "haptic_bridge"), hand != "none") << hand;
   }
   const SessionPlan omni = plan({"hand.device:=omni"});
@@ -254,13 +255,13 @@ TEST_F(SessionPlanTest, ARecordHasWhatTakesPart) {
   EXPECT_TRUE(session.node("session_recorder")->required);
   EXPECT_EQ(at(session, "session_recorder", "hand"), "false");
   EXPECT_EQ(at(session, "session_recorder", "injector"), "false");
-  EXPECT_EQ(at(session, "session_recorder", "training/operator"), "ann");
+  EXPECT_EQ(at(session, "session_recorder", "training/trainee"), "ann");
   EXPECT_NE(at(session, "session_recorder", "training/history").find("cell_microinjection/training.csv"),
             std::string::npos);
   EXPECT_EQ(at(session, "notebook", "cell"), "mouse_oocyte_injection");
   EXPECT_EQ(at(session, "notebook", "file"), "/out/notebook.csv");
   EXPECT_FALSE(takesPart(plan({"record.folder:=/out", "notebook:=''"}), "notebook"));
-  EXPECT_EQ(at(plan({"record.folder:=/out"}), "session_recorder", "training/operator"), "-");
+  EXPECT_EQ(at(plan({"record.folder:=/out"}), "session_recorder", "training/trainee"), "-");
 }
 
 TEST_F(SessionPlanTest, OverridesHaveTheLastWordForEachNode) {

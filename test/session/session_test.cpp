@@ -77,7 +77,7 @@ TEST_F(SessionTest, AcceptsEachAllowedValue) {
                                                                    {"link.scheme", choices.schemes},
                                                                    {"camera.source", choices.cameras},
                                                                    {"display.console", choices.consoles},
-                                                                   {"twin", {"true", "false", "True"}},
+                                                                   {"estimator", {"true", "false", "True"}},
                                                                    {"display.rviz", {"true", "false"}},
                                                                    {"injection.auto_enable", {"true", "false", "auto"}},
                                                                    {"rig.allow_network", {"true", "false", "auto"}}};
@@ -92,14 +92,14 @@ TEST_F(SessionTest, AcceptsEachAllowedValue) {
     }
     EXPECT_NE(refused({key + ":=wrong"}).find("wrong: must be "), std::string::npos) << refused({key + ":=wrong"});
   }
-  EXPECT_EQ(refused({"twin:=true", "sensor.source:=none", "camera.source:=sim"}), "");
+  EXPECT_EQ(refused({"estimator:=true", "sensor.source:=none", "camera.source:=sim"}), "");
 }
 
 TEST_F(SessionTest, NamesKeyValueAndWhatIsAllowed) {
-  EXPECT_EQ(refused({"model:=wrong"}), "argument: model = wrong: must be one of: auto, prepared, live, explicit");
+  EXPECT_EQ(refused({"model:=wrong"}), "argument: model = wrong: must be one of: auto, surrogate, live, explicit");
   EXPECT_NE(refused({"rig.name:=lathe"}).find("argument: rig/name = lathe: must be one of: sim, eppendorf, mp285"),
             std::string::npos);
-  EXPECT_NE(refused({"twin:=maybe"}).find("twin = maybe: must be true or false"), std::string::npos);
+  EXPECT_NE(refused({"estimator:=maybe"}).find("estimator = maybe: must be true or false"), std::string::npos);
 }
 
 TEST_F(SessionTest, NamesWhatDoesNotGoTogether) {
@@ -109,13 +109,14 @@ TEST_F(SessionTest, NamesWhatDoesNotGoTogether) {
        "cell = /nowhere.yaml: no such file: /nowhere.yaml; must be a path, or a name of "
        "config/cells: human_oocyte, mouse"},
       {{"injection.mode:=automatic"},
-       "injection/mode = automatic with hand/device = operator: must be manual, or with hand/device = none"},
+       "injection/mode = automatic with hand/device = virtual_hand: must be manual, or with hand/device = none"},
       {{"hidden:=/nowhere.yaml"}, "hidden = /nowhere.yaml: no such file"},
       {{"hidden:=" + scene, "rig.name:=zaber"}, " with rig/name = zaber: must be with sim or an emulated rig"},
-      {{"twin:=true", "sensor.source:=none"},
-       "twin = true with sensor/source = none and camera/source = none: must be with"},
-      {{"twin:=true", "rig.name:=zaber"}, "twin = true with force/controller = predicted and rig/name = zaber"},
-      {{"twin:=true", "rig.name:=zaber", "sensor.source:=none", "camera.source:=device"},
+      {{"estimator:=true", "sensor.source:=none"},
+       "estimator = true with sensor/source = none and camera/source = none: must be with"},
+      {{"estimator:=true", "rig.name:=zaber"},
+       "estimator = true with force/controller = predicted and rig/name = zaber"},
+      {{"estimator:=true", "rig.name:=zaber", "sensor.source:=none", "camera.source:=device"},
        "an image does not show the puncture"},
       {{"sensor.source:=none", "force.controller:=measured"}, "force/controller = measured with sensor/source = none"},
       {{"sensor.source:=none", "force.hand:=blend"}, "force/hand = blend with sensor/source = none"},
@@ -133,14 +134,14 @@ TEST_F(SessionTest, NamesWhatDoesNotGoTogether) {
 
 TEST_F(SessionTest, RefusesAFileWithLineKeyValueAndWhatIsAllowedAllErrorsAtOnce) {
   const std::string found = refusedFile(
-      "version: 1\nrig:\n  name: lathe\n  speed: 3\ntwin: perhaps\nhand: {motion: none.yaml}\ntwin: true\n");
+      "version: 1\nrig:\n  name: lathe\n  speed: 3\nestimator: perhaps\nhand: {motion: none.yaml}\nestimator: true\n");
   const std::string lab = path("lab.yaml");
   for (const std::string& part :
        {lab + ", line 3: rig/name = lathe: must be one of: sim, eppendorf",
         lab + ", line 4: rig/speed: unknown key; known here: allow_network, config, name, namespace, port, urdf",
-        lab + ", line 5: twin = perhaps: must be true or false",
+        lab + ", line 5: estimator = perhaps: must be true or false",
         lab + ", line 6: hand/motion = none.yaml: no such file: " + path("none.yaml"),
-        lab + ", line 7: twin: is there twice, first in line 5; must be there once"})
+        lab + ", line 7: estimator: is there twice, first in line 5; must be there once"})
     EXPECT_NE(found.find(part), std::string::npos) << found << "\nhas not\n" << part;
 }
 
@@ -153,7 +154,7 @@ TEST_F(SessionTest, NamesTheLinesOfKeysThatDoNotGoTogether) {
 
 TEST_F(SessionTest, RefusesOtherVersions) {
   const std::string lab = path("lab.yaml");
-  EXPECT_EQ(refusedFile("twin: true\n"), lab + ", line 1: version is missing");
+  EXPECT_EQ(refusedFile("estimator: true\n"), lab + ", line 1: version is missing");
   EXPECT_EQ(refusedFile("version: 2\n"),
             lab + ", line 1: version = 2: must be 1: the file is for a newer version of this program");
   EXPECT_NE(
@@ -190,14 +191,15 @@ TEST_F(SessionTest, ABaseIsOverriddenKeyByKey) {
   EXPECT_EQ(parameterAt(session.overrides, "display/marker_rate").Scalar(), "5");
   EXPECT_EQ(session.places.at("rig/port"), today + ", line 3");
   EXPECT_EQ(session.places.at("rig/name"), path("lab/base.yaml") + ", line 2");
-  EXPECT_EQ(session.places.at("twin"), today);
+  EXPECT_EQ(session.places.at("estimator"), today);
   EXPECT_EQ(session.places.at("overrides/display/rate"), today + ", line 4");
   // auto takes back what the base says.
   const std::string back = file("back.yaml", "version: 1\nbase: today.yaml\nrig: {name: sim, port: auto}\n");
   EXPECT_EQ(Session::load(back, {}, kPackage).rig.port, "auto");
   EXPECT_TRUE(Session::load(back, {}, kPackage).injection.auto_enable);
   // By name.
-  EXPECT_EQ(Session::load(file("named.yaml", "version: 1\nbase: default\ntwin: true\n"), {}, kPackage).twin, true);
+  EXPECT_EQ(Session::load(file("named.yaml", "version: 1\nbase: default\nestimator: true\n"), {}, kPackage).estimator,
+            true);
 }
 
 TEST_F(SessionTest, NamesBasesThatAreWrong) {
@@ -209,9 +211,9 @@ TEST_F(SessionTest, NamesBasesThatAreWrong) {
                 " -> " + path("c.yaml") + " -> " + path("a.yaml"));
   EXPECT_NE(refusedFile("version: 1\nbase: nobody\n").find("lab.yaml, line 2: base = nobody: no such file"),
             std::string::npos);
-  file("wrong.yaml", "version: 1\ntwin: 3\n");
+  file("wrong.yaml", "version: 1\nestimator: 3\n");
   const std::string both = refusedFile("version: 1\nbase: wrong.yaml\nmodel: 4\n");
-  EXPECT_NE(both.find("wrong.yaml, line 2: twin = 3"), std::string::npos) << both;
+  EXPECT_NE(both.find("wrong.yaml, line 2: estimator = 3"), std::string::npos) << both;
   EXPECT_NE(both.find("lab.yaml, line 3: model = 4"), std::string::npos) << both;
 }
 
@@ -273,15 +275,16 @@ TEST_F(SessionTest, WhatBelongsToADeviceGoesWithIt) {
   EXPECT_EQ(other.hand.config, kPackage + "/config/haptic/joy.yaml");
   EXPECT_EQ(other.hand.topics.name_space, "auto");
   EXPECT_EQ(other.hand.position_type, "auto");
-  for (const char* hand : {"none", "operator"})
+  for (const char* hand : {"none", "virtual_hand"})
     EXPECT_EQ(session({std::string("hand.device:=") + hand, "hand.config:=" + mine}).hand.config, "") << hand;
 }
 
 TEST_F(SessionTest, ArgumentsAreKeysWithValues) {
-  const Session session = this->session({"hand.device:=keyboard", "twin:=", "hand.topics:={namespace: /a, force: /b}",
-                                         "overrides.injection_controller.motion.stab_speed:=5e-6"});
+  const Session session =
+      this->session({"hand.device:=keyboard", "estimator:=", "hand.topics:={namespace: /a, force: /b}",
+                     "overrides.injection_controller.motion.stab_speed:=5e-6"});
   EXPECT_EQ(session.hand.device, "keyboard");
-  EXPECT_FALSE(session.twin);
+  EXPECT_FALSE(session.estimator);
   EXPECT_EQ(session.hand.topics.force, "/b");
   EXPECT_EQ(session.places.at("hand/device"), "argument");
   EXPECT_EQ(parameterAt(session.overrides, "injection_controller/motion/stab_speed").as<double>(), 5e-6);
@@ -290,7 +293,8 @@ TEST_F(SessionTest, ArgumentsAreKeysWithValues) {
   EXPECT_EQ(this->session({"record.folder=/a=b", "hand.topics.namespace:=/c:=d"}).record.folder, "/a=b");
   EXPECT_NE(refused({"=a"}).find("must be KEY:=VALUE"), std::string::npos);
   EXPECT_NE(refused({":=a"}).find("must be KEY:=VALUE"), std::string::npos);
-  EXPECT_NE(refused({"twin:=true", "twin:=false"}).find("argument twin:=false: is there twice"), std::string::npos);
+  EXPECT_NE(refused({"estimator:=true", "estimator:=false"}).find("argument estimator:=false: is there twice"),
+            std::string::npos);
   EXPECT_NE(refused({"rig:=zaber", "rig.port:=/dev/a"}).find("argument rig.port:=/dev/a: is there twice"),
             std::string::npos);
   EXPECT_NE(refused({"rig:=zaber"}).find("argument: rig = zaber: must be a map"), std::string::npos);

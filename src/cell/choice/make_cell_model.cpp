@@ -1,5 +1,6 @@
 #include "cell/choice/make_cell_model.h"
 
+#include <map>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -8,117 +9,145 @@
 #include "cell/choice/member_change.h"
 #include "cell/choice/model_choice.h"
 #include "cell/family/family_cell.h"
-#include "cell/model/online_cell.h"
+#include "cell/model/live_cell.h"
 #include "cell/model/puncturable_cell.h"
 #include "cell/surrogate/surrogate_cell_model.h"
 
 namespace microinjection {
 namespace {
 
-constexpr char kNotOfFamily[] = "only a cell of a family can";
+enum class Served { kExplicit, kLive, kSurrogate };
 
-ChosenCellModel live(const Scene& scene, const OnlineCellModelConfig& config, const std::string& description,
-                     bool as_required) {
-  const auto cell = makeOnlineCell(scene);
-  auto tracker = std::make_unique<OnlineCellModel>(cell, config);
-  return {std::make_unique<PuncturableCell>(scene, std::move(tracker)), description + ": " + cell->description(),
-          as_required, nullptr, std::string("this one is solved live; ") + kNotOfFamily};
-}
-
-ChosenCellModel unprepared(const Scene& scene, const OnlineCellModelConfig& config, const std::string& reason) {
-  try {
-    return live(scene, config, reason + "; so it is live", false);
-  } catch (const ConfigError& error) {
-    throw ConfigError(reason + "; and the live model cannot serve it: " + error.what());
-  }
-}
-
-/// Why a scene's prepared data cannot be used, and what to do; `call` prepares them.
-std::string notPreparedReason(const CacheRead<SurrogateData>& read, const std::string& call) {
-  switch (read.state) {
-    case CacheState::kDamaged:
-      return "the prepared data are damaged (" + read.reason + "); to make them anew, run: " + call;
-    case CacheState::kNotRegular:
-      return "the prepared data are not used (" + read.reason + "); to make them, remove it and run: " + call;
-    case CacheState::kUnreadable:
-      return "the prepared data cannot be used (" + read.reason + "); make it readable, or remove it and run: " + call;
-    case CacheState::kOther:
-      return "the prepared data are not of this program and cell (" + read.reason + "); run: " + call;
-    default:
-      return "the cell is not prepared; run: " + call;
-  }
-}
-
-/// Data of a scene's converged force.
-struct PreparedCell {
+/// Surrogate data for a scene.
+struct SurrogateSource {
   std::shared_ptr<const SurrogateData> data;  ///< none: `text` is the reason
   std::string text;                           ///< where they are from
   std::shared_ptr<const FamilyData> family;   ///< that contains the scene; null: none
 };
 
-/// The scene's own data or those of a family, whichever are more exact.
-PreparedCell findPrepared(const Scene& scene, const std::string& families, const std::string& call) {
-  const PreparationRange range = PreparationRange::standard(scene);
-  auto own = SurrogateData::load(scene, range, preparedFile(scene, Preparation::plan(scene, range)));
-  std::string outside;
-  const std::optional<FamilyCell> member = findFamilyCell(families, scene, outside);
-  const std::string damage = own || own.state == CacheState::kMissing ? "" : "; " + notPreparedReason(own, call);
-  if (own && (!member || own.content->common_error <= member->data->common_error)) {
-    return {std::make_shared<const SurrogateData>(std::move(*own.content)), "from its own preparation",
-            member ? member->family : nullptr};
-  }
-  if (member) return {member->data, member->description + damage, member->family};
-  return {nullptr, notPreparedReason(own, call) + (outside.empty() ? "" : "; " + outside), nullptr};
+/// What will serve a scene.
+struct ServingPlan {
+  Served served = Served::kLive;
+  std::string reason;  ///< user-readable
+  bool as_required = true;
+  bool is_fallback = false;  ///< live, because there are no surrogate data
+  SurrogateSource source{};
+};
+
+/// Why a scene's own surrogate data cannot be used, and what to do; `call` prepares them.
+std::string missingReason(const CacheRead<SurrogateData>& read, const std::string& call) {
+  static const std::map<CacheState, std::pair<std::string, std::string>> kReasons = {
+      {CacheState::kDamaged, {"are damaged", "to make them anew, run: "}},
+      {CacheState::kNotRegular, {"are not used", "to make them, remove it and run: "}},
+      {CacheState::kUnreadable, {"cannot be used", "make it readable, or remove it and run: "}},
+      {CacheState::kOther, {"are not of this program and cell", "run: "}}};
+  const auto known = kReasons.find(read.state);
+  std::string reason = "the cell is not prepared; run: ";
+  if (known != kReasons.end())
+    reason = "the surrogate data " + known->second.first + " (" + read.reason + "); " + known->second.second;
+  return reason + call;
 }
 
-/// Reason why a scene cannot be prepared; empty when it can.
-std::string preparationRefusal(const Scene& scene) {
-  try {
-    Preparation::check(scene);
-  } catch (const ConfigError& error) {
-    return error.what();
+/// The scene's own data or those of a family, whichever are more exact.
+SurrogateSource findSurrogate(const Scene& scene, const std::string& families, const std::string& call) {
+  const SurrogateRange range = SurrogateRange::standard(scene);
+  auto own = SurrogateData::load(scene, range, surrogateFile(scene, SurrogatePlan::plan(scene, range)));
+  std::string outside;
+  const std::optional<FamilyCell> member = findFamilyCell(families, scene, outside);
+  SurrogateSource source;
+  if (member) source.family = member->family;
+  if (own && (!member || own.content->common_error <= member->data->common_error)) {
+    source.data = std::make_shared<const SurrogateData>(std::move(*own.content));
+    source.text = "from its own preparation";
+  } else if (member) {
+    source.data = member->data;
+    source.text =
+        member->description + (own || own.state == CacheState::kMissing ? "" : "; " + missingReason(own, call));
+  } else {
+    source.text = missingReason(own, call) + (outside.empty() ? "" : "; " + outside);
   }
-  return "";
+  return source;
+}
+
+/// Between surrogate data, where a scene has some, and the live cell.
+ServingPlan planBetween(const Scene& scene, const std::string& model, const std::string& families,
+                        const std::string& call) {
+  ServingPlan plan;
+  try {
+    SurrogatePlan::check(scene);
+  } catch (const ConfigError& error) {
+    plan.source.text = std::string("the cell cannot be prepared (") + error.what() + ")";
+  }
+  if (plan.source.text.empty()) plan.source = findSurrogate(scene, families, call);
+  if (plan.source.data) {
+    std::vector<ModelFigures> figures = {measureSurrogate(scene, plan.source.data)};
+    std::string note;
+    if (model == "auto") {
+      const CacheRead<ModelFigures> live = loadFigures(scene, "live");
+      if (live) figures.push_back(*live.content);
+      if (!live && live.state != CacheState::kMissing)
+        note = "; figures of the live model: " + live.reason + "; run: " + call;
+    }
+    const ModelChoice choice = chooseModel(scene.requirements, figures);
+    plan.served = choice.name == "live" ? Served::kLive : Served::kSurrogate;
+    plan.as_required = choice.meets;
+    plan.reason = "model " + model + ": " + choice.reason + note + "; " +
+                  (plan.served == Served::kLive ? "it is" : plan.source.text);
+  } else {
+    if (model == "surrogate") throw ConfigError("model = surrogate: " + plan.source.text);
+    plan.is_fallback = true;
+    plan.as_required = false;
+    plan.reason = plan.source.text + "; so it is live";
+  }
+  return plan;
+}
+
+ServingPlan planFor(const Scene& scene, const std::string& model, const std::string& families,
+                    const std::string& call) {
+  ServingPlan plan;
+  if (model == "explicit") {
+    plan.served = Served::kExplicit;
+    plan.reason = "the cell is the paper's explicit dynamics, as asked for";
+    plan.as_required = false;
+  } else if (model == "live") {
+    plan.reason = "the cell is live, as asked for";
+  } else if (model == "auto" && scene.cell.tensegrity) {
+    plan.reason = "the cell is a tensegrity, solved live";  // its scene has no requirements
+  } else {
+    plan = planBetween(scene, model, families, call);
+  }
+  return plan;
 }
 
 }  // namespace
 
 ChosenCellModel makeCellModel(const Scene& scene, const std::string& model, const CellModelConfig& config,
                               const std::string& path) {
-  if (model == "explicit") {
-    auto tracker = std::make_unique<ExplicitCellModel>(scene, config.explicit_dynamics);
-    const std::string description =
-        "the cell is the paper's explicit dynamics, as asked for: " + tracker->description();
-    return {std::make_unique<PuncturableCell>(scene, std::move(tracker)), description, false, nullptr, kNotOfFamily};
+  ServingPlan plan = planFor(scene, model, config.families, "rosrun cell_microinjection prepare --scene " + path);
+  ChosenCellModel chosen{nullptr, std::move(plan.reason), plan.as_required, nullptr, "only a cell of a family can"};
+  std::unique_ptr<CellModel> tracker;
+  if (plan.served == Served::kExplicit) {
+    auto explicit_model = std::make_unique<ExplicitCellModel>(scene, config.explicit_dynamics);
+    chosen.description += ": " + explicit_model->description();
+    tracker = std::move(explicit_model);
+  } else if (plan.served == Served::kSurrogate) {
+    auto surrogate = std::make_unique<SurrogateCellModel>(scene, plan.source.data);
+    if (plan.source.family) chosen.change = std::make_unique<MemberChange>(scene, plan.source.family, *surrogate);
+    tracker = std::move(surrogate);
+  } else {
+    std::shared_ptr<const LiveCell> cell;
+    try {
+      cell = makeLiveCell(scene);
+    } catch (const ConfigError& error) {
+      if (!plan.is_fallback) throw;
+      throw ConfigError(plan.source.text + "; and the live model cannot serve it: " + error.what());
+    }
+    chosen.description += ": " + cell->description();
+    chosen.unchangeable = "this one is solved live; " + chosen.unchangeable;
+    tracker = std::make_unique<LiveCellModel>(cell, config.live);
   }
-  if (scene.cell.tensegrity && model != "prepared") {
-    return live(scene, config.online, "the cell is a tensegrity, solved live", true);  // its scene has no requirements
-  }
-  if (model == "live") return live(scene, config.online, "the cell is live, as asked for", true);
-  const std::string refused = preparationRefusal(scene);
-  if (!refused.empty()) {
-    if (model == "prepared") throw ConfigError("model = prepared: " + refused);
-    return unprepared(scene, config.online, "the cell cannot be prepared (" + refused + ")");
-  }
-  const std::string call = "rosrun cell_microinjection prepare --scene " + path;
-  const PreparedCell prepared = findPrepared(scene, config.families, call);
-  if (!prepared.data && model == "prepared") throw ConfigError("model = prepared: " + prepared.text);
-  if (!prepared.data) return unprepared(scene, config.online, prepared.text);
-  std::vector<ModelFigures> figures = {measurePreparedCell(scene, prepared.data)};
-  std::string note;
-  if (model != "prepared") {
-    const CacheRead<ModelFigures> other = loadFigures(scene, "live");
-    if (other) figures.push_back(*other.content);
-    if (!other && other.state != CacheState::kMissing)
-      note = "; figures of the live model: " + other.reason + "; run: " + call;
-  }
-  const ModelChoice choice = chooseModel(scene.requirements, figures);
-  const std::string description = "model " + model + ": " + choice.reason + note;
-  if (choice.name == "live") return live(scene, config.online, description + "; it is", choice.meets);
-  auto tracker = std::make_unique<SurrogateCellModel>(scene, prepared.data);
-  auto change = prepared.family ? std::make_unique<MemberChange>(scene, prepared.family, *tracker) : nullptr;
-  return {std::make_unique<PuncturableCell>(scene, std::move(tracker)), description + "; " + prepared.text,
-          choice.meets, std::move(change), kNotOfFamily};
+  chosen.cell = std::make_unique<PuncturableCell>(scene, std::move(tracker));
+  return chosen;
 }
 
 }  // namespace microinjection

@@ -6,7 +6,7 @@
 #include "cell/choice/member_change.h"
 #include "cell/model/cell_model.h"
 #include "cell/model/explicit_cell_model.h"
-#include "cell/model/online_cell_model.h"
+#include "cell/model/live_cell_model.h"
 
 namespace microinjection {
 
@@ -21,15 +21,22 @@ struct ChosenCellModel {
 
 struct CellModelConfig {
   std::string families;  ///< folder of family files; empty: none
-  OnlineCellModelConfig online;
+  LiveCellModelConfig live;
   ExplicitCellModelConfig explicit_dynamics;
 };
 
-/// A scene's cell for a moving needle. `model`: prepared (the scene's own data of `prepare`, or a
-/// family's, whichever are more exact), live (see makeOnlineCell), explicit (ExplicitCellModel) or
-/// auto (chosen by the scene's requirements, see chooseModel; live without data). It never replaces
-/// a model that was requested by name.
-/// `path`: of the scene, for messages. Throws ConfigError when the model cannot serve the scene.
+/// A scene's cell for a moving needle. The way goes in one direction:
+///
+///     model, scene --> plan: explicit | live | surrogate data, own or a family's --> tracker --> PuncturableCell
+///                            (auto: chooseModel() by error and time)
+///
+/// The plan alone knows files and figures, so that what serves a scene can be read in one place, and building it
+/// cannot change the choice. A model that was requested by name is never replaced: a force of another model than the
+/// one asked for would be taken for that one's.
+/// @param model   surrogate (the scene's own data of `prepare`, or a family's, whichever are more exact), live (see
+///                makeLiveCell), explicit (ExplicitCellModel), or auto (by the scene's requirements; live without data)
+/// @param path    of the scene, for messages
+/// @throws ConfigError when the model cannot serve the scene
 ChosenCellModel makeCellModel(const Scene& scene, const std::string& model, const CellModelConfig& config,
                               const std::string& path);
 

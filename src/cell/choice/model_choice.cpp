@@ -11,7 +11,7 @@
 #include "base/cpu_time.h"
 #include "cell/model/contact_frame.h"
 #include "cell/model/converged_force.h"
-#include "cell/model/online_cell.h"
+#include "cell/model/live_cell.h"
 #include "cell/model/p1_cell.h"
 #include "cell/model/similarity.h"
 #include "cell/surrogate/surrogate_contact.h"
@@ -32,10 +32,10 @@ std::string describe(const ModelFigures& model) {
   return text;
 }
 
-/// The figures also depend on the live cell, unlike prepared data: on its mesh, and on its model,
-/// which differs if the same elastic cell is viscoelastic (see makeOnlineCell).
+/// The figures also depend on the live cell, unlike surrogate data: on its mesh, and on its model,
+/// which differs if the same elastic cell is viscoelastic (see makeLiveCell).
 std::string figuresDescription(const Scene& scene, const std::string& name) {
-  const Preparation plan = Preparation::plan(scene, PreparationRange::standard(scene));
+  const SurrogatePlan plan = SurrogatePlan::plan(scene, SurrogateRange::standard(scene));
   std::ostringstream out;
   out << plan.description(scene) << " figures " << kFigures << ' ' << name << " on " << std::hexfloat
       << rounded(scene.meshSize() / scene.radius()) << ' ' << scene.mesh.refinement.zone << ' '
@@ -44,10 +44,10 @@ std::string figuresDescription(const Scene& scene, const std::string& name) {
   return out.str();
 }
 
-/// A file for each live cell of the same prepared cell.
+/// A file for each live cell of the same surrogate cell.
 std::string figuresFile(const Scene& scene, const std::string& name) {
-  const Preparation plan = Preparation::plan(scene, PreparationRange::standard(scene));
-  const std::string folder = preparedFolder(scene, plan);
+  const SurrogatePlan plan = SurrogatePlan::plan(scene, SurrogateRange::standard(scene));
+  const std::string folder = surrogateFolder(scene, plan);
   return folder.empty() ? "" : folder + "/figures_" + name + '_' + contentHash(figuresDescription(scene, name));
 }
 
@@ -78,7 +78,7 @@ ModelChoice chooseModel(const Scene::Requirements& requirements, std::vector<Mod
 ModelFigures measureLiveCell(const Scene& scene) {
   Scene axial = scene;
   axial.needle.offset.setZero();
-  const auto cell = makeOnlineCell(axial);  // throws if no live cell can serve the scene
+  const auto cell = makeLiveCell(axial);  // throws if no live cell can serve the scene
   Indenting indenting;
   for (double depth : kDepths) indenting.depths.push_back(depth * scene.cell.diameter());
   ConvergedForceConfig config;
@@ -116,7 +116,7 @@ ModelFigures measureLiveCell(const Scene& scene) {
   return figures;
 }
 
-ModelFigures measurePreparedCell(const Scene& scene, const std::shared_ptr<const SurrogateData>& cell) {
+ModelFigures measureSurrogate(const Scene& scene, const std::shared_ptr<const SurrogateData>& cell) {
   SurrogateContact contact(scene, cell);
   std::vector<double> times(kTimedSteps);
   const Eigen::Vector3d touch = ContactFrame::at(scene, ContactFrame::offsetFor(scene, 0.4))->origin;
@@ -127,7 +127,7 @@ ModelFigures measurePreparedCell(const Scene& scene, const std::shared_ptr<const
     times[i] = threadCpuTime() - start;
   }
   std::sort(times.begin(), times.end());
-  return {"prepared", cell->common_error, times[times.size() * 99 / 100]};
+  return {"surrogate", cell->common_error, times[times.size() * 99 / 100]};
 }
 
 void saveFigures(const Scene& scene, const ModelFigures& figures) {

@@ -13,7 +13,7 @@ namespace microinjection {
 
 /// Measured accuracy and speed of a model with one scene.
 struct ModelFigures {
-  std::string name;                                              ///< prepared or live
+  std::string name;                                              ///< surrogate or live
   double force_error = std::numeric_limits<double>::infinity();  ///< relative, against the converged force
   double time = 0;                                               ///< s of CPU time for one force
 };
@@ -28,16 +28,16 @@ struct ModelChoice {
 /// that are fast enough, else the fastest. `models` must not be empty.
 ModelChoice chooseModel(const Scene::Requirements& requirements, std::vector<ModelFigures> models);
 
-/// Solves the live cell (see makeOnlineCell) at a few depths on the axis and compares it with the
+/// Solves the live cell (see makeLiveCell) at a few depths on the axis and compares it with the
 /// converged section, where that has a solution. Takes seconds to a minute. Throws ConfigError when
 /// there is no live cell for the scene.
 ModelFigures measureLiveCell(const Scene& scene);
 
 /// Error of the fit (nine of ten equilibria have less), and time measured now (99 of 100 steps take
 /// less).
-ModelFigures measurePreparedCell(const Scene& scene, const std::shared_ptr<const SurrogateData>& cell);
+ModelFigures measureSurrogate(const Scene& scene, const std::shared_ptr<const SurrogateData>& cell);
 
-/// Stores figures with the scene's prepared data, because a choice must not take a minute.
+/// Stores figures with the scene's surrogate data, because a choice must not take a minute.
 void saveFigures(const Scene& scene, const ModelFigures& figures);
 CacheRead<ModelFigures> loadFigures(const Scene& scene, const std::string& name);
 

@@ -17,6 +17,19 @@ struct Gap {
 /// pipette then has a flat end of radius c, a toroidal edge of radius e and a straight shaft. If e
 /// is the whole radius, the core is a ray and the end a hemisphere. Frame of all points: origin at
 /// the tip's lowest point on its axis, z along the shaft (out of the cell); metres.
+///
+///            z
+///       |  | : |  |         shaft of radius c + e
+///       |  | : |  |
+///       |  +-:-+  |         z = e: lower end of the core, of radius c
+///        \   :   /          edge: a torus of radius e
+///         `--:--'           z = 0: flat end of radius c
+///
+/// A scene has rounded tips because the paper's sharp disc folds the surface under its edge: a neo-Hookean cell has a
+/// converged force to 8 um there (elements of 0.4 um at the edge), and to 45 um under a hemisphere
+/// (doc/reference/benchmarks.md, Where a converged force ends). The surface is given by its exact distance, not by
+/// triangles: Newton's method needs gap, normal and curvature of a contact, and facets would make the normal jump
+/// at each of their edges while the cell slides over them.
 class RoundedTip {
  public:
   /// 0 < edge_radius <= radius, m; throws ConfigError otherwise.

@@ -21,7 +21,7 @@ class ForcePath {
     double force = 0;  ///< N, along the pipette, with its relaxation
     double depth = 0;  ///< m, past the contact point
     bool touches = false;
-    bool prepared = true;  ///< false: outside of the prepared range, where the force is none to learn from
+    bool prepared = true;  ///< false: outside of the surrogate's range, where the force is none to learn from
   };
 
   /// One point for each sample. `shift`: m, of the cell's surface along +z.

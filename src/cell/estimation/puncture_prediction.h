@@ -13,7 +13,7 @@ namespace microinjection {
 struct PuncturePrediction {
   double depth = 0, depth_low = 0, depth_high = 0;  ///< m, past the contact point
   double force = 0, force_low = 0, force_high = 0;  ///< N, along the pipette
-  double beyond = 0;  ///< probability that it fails deeper than the prepared range, which counts as its end
+  double beyond = 0;  ///< probability that it fails deeper than the surrogate's range, which counts as its end
 };
 
 /// Predicts the puncture of a cell from its failure law and from what is known of its modulus.

@@ -29,7 +29,7 @@ RivalWatch::RivalWatch(const Scene& scene, const std::shared_ptr<const Surrogate
     : radius_(scene.radius()), rivals_(std::move(rivals)), config_(config) {
   const MaterialConfig& material = scene.cell.material();
   if (!rivals_ || rivals_->empty() || !material.viscoelasticity.prony.empty()) return;
-  believed_ = BelievedCell{shapeOf(*cell, material.young_modulus), cell->median_error};
+  estimated_ = EstimatedCell{shapeOf(*cell, material.young_modulus), cell->median_error};
 }
 
 void RivalWatch::reset() {
@@ -40,7 +40,7 @@ void RivalWatch::reset() {
 
 const std::string& RivalWatch::follow(const std::vector<SampleHistory::Sample>& samples, double noise,
                                       const Estimate& estimate) {
-  if (!believed_ || !better_.empty() || estimate.depth < kFirst || estimate.depth < compared_ + kComparisonStep) {
+  if (!estimated_ || !better_.empty() || estimate.depth < kFirst || estimate.depth < compared_ + kComparisonStep) {
     return better_;
   }
   compared_ = estimate.depth;
@@ -72,7 +72,7 @@ bool RivalWatch::compare(const std::vector<SampleHistory::Sample>& samples, doub
   start.modulus = estimate.modulus;
   start.contact = -radius_ - estimate.contact;
   start.offset = estimate.offset;
-  const RivalComparison compared = compareWithRivals(*believed_, *rivals_, path, known, start);
+  const RivalComparison compared = compareWithRivals(*estimated_, *rivals_, path, known, start);
   last_ = compared.best;
   return compared.contradicts();
 }

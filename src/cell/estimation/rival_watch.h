@@ -11,7 +11,7 @@
 
 namespace microinjection {
 
-/// Compares the believed cell with its rivals while the needle indents, each time it is another half of a
+/// Compares the served cell with its rivals while the needle indents, each time it is another half of a
 /// micrometre deeper. Only for elastic cells and a needle near the cell's axis.
 class RivalWatch {
  public:
@@ -21,7 +21,7 @@ class RivalWatch {
     double offset_deviation = 0;   ///< N
     double sensor_floor = 0;       ///< N, of a sample, beside its noise
   };
-  /// The estimate of the believed cell.
+  /// What is known of the served cell.
   struct Estimate {
     double modulus = 0;  ///< Pa
     double contact = 0;  ///< m, above where the surface is modelled
@@ -42,8 +42,8 @@ class RivalWatch {
  private:
   bool compare(const std::vector<SampleHistory::Sample>& samples, double noise, const Estimate& estimate);
 
-  double radius_;                         ///< m
-  std::optional<BelievedCell> believed_;  ///< empty when there is nothing to compare
+  double radius_;                           ///< m
+  std::optional<EstimatedCell> estimated_;  ///< empty when there is nothing to compare
   std::shared_ptr<const std::vector<RivalCell>> rivals_;
   Config config_;
   double compared_ = 0;  ///< m, depth

@@ -34,7 +34,7 @@ ChebyshevGrid axisForceGrid(const Family& family) { return {family.dimension(), 
 
 Eigen::VectorXd solveAxisForces(const Family& family, const Eigen::VectorXd& coordinates) {
   const Scene member = family.member(coordinates);
-  const Preparation plan = planMember(family, member);
+  const SurrogatePlan plan = planMember(family, member);
   std::vector<double> depths;
   for (int i = 0; i < kAxisDepths; ++i) depths.push_back(std::pow(root(i), 2) * plan.range.axis_depth);
   const std::vector<TrainingSample> samples = solveAxis(member, depths);
@@ -79,7 +79,7 @@ AxisCurve axisRatio(const AxisCurve& curve, const AxisCurve& other, double axis_
   };
 }
 
-double axisForce(const ForceField& field, const Preparation& plan) {
+double axisForce(const ForceField& field, const SurrogatePlan& plan) {
   return axisCurve(field, plan.scales)(std::sqrt(kAt * plan.range.depth / plan.range.axis_depth));
 }
 

@@ -37,6 +37,6 @@ AxisCurve axisRatio(const AxisCurve& curve, const AxisCurve& other, double axis_
 
 /// Size of a member's force: that on the axis at half of the range's depth, over the force of
 /// EnergyScales.
-double axisForce(const ForceField& field, const Preparation& plan);
+double axisForce(const ForceField& field, const SurrogatePlan& plan);
 
 }  // namespace microinjection

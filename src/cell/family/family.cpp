@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "base/config_reader.h"
+#include "base/errors.h"
 #include "cell/family/family_places.h"
 #include "cell/material/material_parameter.h"
 #include "cell/model/plausible_scene.h"
@@ -68,7 +69,7 @@ Family Family::load(const std::string& path) {
   readParameters(reader, "constants", layers, family.constants_);
   if (family.parameters_.empty()) reader.error("parameters", "must name at least one ratio");
   reader.finish();
-  Preparation::check(family.scene_);
+  SurrogatePlan::check(family.scene_);
   return family;
 }
 
@@ -105,7 +106,7 @@ std::optional<Eigen::VectorXd> Family::coordinatesOf(const Scene& scene, std::st
              (scene.cell.layers.size() == 1 ? " layer, not " : " layers, not ") + std::to_string(count);
     return std::nullopt;
   }
-  Scene other = withoutDimension(Preparation::elastic(scene));
+  Scene other = withoutDimension(SurrogatePlan::elastic(scene));
   Eigen::VectorXd coordinates(dimension());
   for (int i = 0; i < dimension(); ++i) {
     const Ratio& ratio = *parameters_[i].ratio;
@@ -122,12 +123,18 @@ std::optional<Eigen::VectorXd> Family::coordinatesOf(const Scene& scene, std::st
       addMisfit(misfit, constant.text(*value));
   }
   if (misfit.empty()) misfit = differenceFrom(other);
+  // The ratios do not hold what no surrogate has, such as adhesion.
+  try {
+    if (misfit.empty()) SurrogatePlan::check(scene);
+  } catch (const ConfigError& error) {
+    misfit = error.what();
+  }
   return misfit.empty() ? std::optional(coordinates) : std::nullopt;
 }
 
 /// What the family does not vary and a scene without dimension has otherwise; empty if there is nothing.
 std::string Family::differenceFrom(const Scene& scene) const {
-  const Scene own = Preparation::elastic(scene_);
+  const Scene own = SurrogatePlan::elastic(scene_);
   if (describeCellAndTip(scene) == describeCellAndTip(own)) return "";
   std::string text;
   const auto compare = [&](const std::string& name, const auto& value, const auto& wanted) {
@@ -157,7 +164,7 @@ bool Family::contains(const Eigen::VectorXd& coordinates) {
   return coordinates.cwiseAbs().maxCoeff() <= 1 + kRoundingOfRange;
 }
 
-PreparationRange Family::range(const Scene& member) const {
+SurrogateRange Family::range(const Scene& member) const {
   const double depth =
       rounded(deepest_ / (1 + std::pow(half_depth_tip_ / member.needle.tip.radius, kDepthExponent)) * member.radius());
   return familyRange(angle_, depth);
@@ -171,7 +178,7 @@ std::string Family::description() const {
   }
   const Scene centre = member(Eigen::VectorXd::Zero(dimension()));
   out << "range " << deepest_ << ' ' << half_depth_tip_ << ' '
-      << Preparation::plan(centre, range(centre)).description(centre);
+      << SurrogatePlan::plan(centre, range(centre)).description(centre);
   return out.str();
 }
 

@@ -96,10 +96,10 @@ std::vector<Eigen::VectorXd> drawMembers(const Family& family, int count, int se
   return members;
 }
 
-Preparation drawMotions(const Family& family, const Eigen::VectorXd& coordinates, int seed) {
+SurrogatePlan drawMotions(const Family& family, const Eigen::VectorXd& coordinates, int seed) {
   const Scene member = family.member(coordinates);
-  Preparation motions = planMember(family, member);
-  const PreparationRange& range = motions.range;
+  SurrogatePlan motions = planMember(family, member);
+  const SurrogateRange& range = motions.range;
   motions.rays.clear();
   std::mt19937 random(static_cast<unsigned>(seed));
   const double deepest = std::min(2 * kDeepest, range.depth), sideways = std::min(2 * kSideways, range.lateral);
@@ -124,8 +124,8 @@ std::vector<int> referenceNodes() {
   return nodes;
 }
 
-std::vector<ReferencePlace> referencePlaces(int member, const Eigen::VectorXd& coordinates, const Preparation& motions,
-                                            const std::vector<TrainingResult>& results) {
+std::vector<ReferencePlace> referencePlaces(int member, const Eigen::VectorXd& coordinates,
+                                            const SurrogatePlan& motions, const std::vector<TrainingResult>& results) {
   std::vector<MeshCorrection::Pair> pairs;
   std::vector<const TrainingSample*> shallow;
   for (std::size_t i = 0; i < results.size(); ++i) {

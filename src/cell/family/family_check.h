@@ -14,7 +14,7 @@ std::vector<Eigen::VectorXd> drawMembers(const Family& family, int count, int se
 /// 0.08 diameters sideways; two places on each. For odd seeds, one of five is out of the plane of
 /// symmetry, where a path costs ten times as much. Each path is there on the fine mesh and, with its
 /// surface, on the coarse one. Places near the first contact have a path on a finer mesh.
-Preparation drawMotions(const Family& family, const Eigen::VectorXd& coordinates, int seed);
+SurrogatePlan drawMotions(const Family& family, const Eigen::VectorXd& coordinates, int seed);
 
 /// A place where a family's cell is compared with the converged solution.
 struct CheckedPlace {
@@ -43,8 +43,8 @@ struct ReferencePlace {
 std::vector<int> referenceNodes();
 
 /// The places of a drawn member that were solved, from the results of drawMotions.
-std::vector<ReferencePlace> referencePlaces(int member, const Eigen::VectorXd& coordinates, const Preparation& motions,
-                                            const std::vector<TrainingResult>& results);
+std::vector<ReferencePlace> referencePlaces(int member, const Eigen::VectorXd& coordinates,
+                                            const SurrogatePlan& motions, const std::vector<TrainingResult>& results);
 
 /// Compares the family's cells with converged places, as far as they are within its range.
 /// `places`: a member's are in sequence.

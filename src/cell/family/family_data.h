@@ -34,6 +34,28 @@ struct AxisForce {
 };
 
 /// The solved members of a family, from which it makes any other one.
+///
+///     coordinates --> Kriging: a weight for each member --> sum of their coefficients --> SurrogateData
+///        |                                                       ^
+///        `--> ChebyshevGrid: the force on the axis at 12 depths --> each member's forces are scaled
+///             to it first, along every straight path
+///
+/// Two fidelities, because the section on the axis costs a hundredth of a member and has the largest part of what
+/// varies. It is solved on a grid of 6 points for each ratio; what is left to interpolate between the members is how
+/// the force beside the axis differs from that on it. Each of 22 members of `homogeneous`, predicted from the other 21
+/// (doc/design/families.md, Why two fidelities; median, nine of ten below):
+///
+///     prediction                 members only     scaled to the force on the axis
+///     polynomial of degree 2     1.2, 2.6 %       0.9, 2.5 %
+///     polynomial of degree 3     0.8, 2.7 %       0.9, 2.9 %
+///     kriging                    0.5, 1.5 %       0.3, 1.1 %
+///
+/// Kriging also estimates its own error from the places of the members, which chooses the next member to solve
+/// (next_members.h) and tells a cell with too few members around it. Members that were not trained are met to 0.60 % of
+/// the force (`homogeneous`) and 0.50 % (`zona`; medians, doc/reference/benchmarks.md, Families of cells).
+///
+/// Everything is without dimension. The predictions, from serves() to axisForce(), need an update() or a load() after
+/// the last add(); several threads may then use them at once.
 class FamilyData {
  public:
   explicit FamilyData(Family family) : family_(std::move(family)) {}
@@ -46,6 +68,7 @@ class FamilyData {
   const std::string& provenance() const { return provenance_; }
   void setProvenance(std::string text) { provenance_ = std::move(text); }
 
+  /// `displacements`: of SurfaceGrid (rows) at surfacePlaces() (columns), over the cell's radius.
   void add(const FamilyMember& member, const Eigen::MatrixXf& displacements);
   void addFailed(const Eigen::VectorXd& coordinates) { failed_.push_back(coordinates); }
   /// Forces on the axis at the nodes of axisForceGrid() (rows): a column for each depth of an
@@ -85,6 +108,7 @@ class FamilyData {
   /// What cell() has on the axis, in a hundredth of its time. @pre hasAxisCurves()
   AxisForce axisForce(const Eigen::VectorXd& coordinates) const;
 
+  /// Throws WriteError.
   void save(const std::string& path) const;
   /// The state is kOther for data of another family or version, and kDamaged for an invalid size or
   /// value.

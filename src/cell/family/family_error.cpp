@@ -42,7 +42,7 @@ LeaveOneOut::LeaveOneOut(const Family& family, const std::vector<FamilyMember>& 
     : scales_(scales), with_curves_(!curves.empty()) {
   for (std::size_t i = 0; i < members.size(); ++i) {
     const FamilyMember& at = members[i];
-    const Preparation plan = planMember(family, family.member(at.coordinates));
+    const SurrogatePlan plan = planMember(family, family.member(at.coordinates));
     const std::vector<ContactPlace> places = forcePlaces(plan);
     Member member;
     member.scale = at.scale;

@@ -11,7 +11,7 @@ namespace {
 constexpr double kSamePlace = 1e-9;  ///< squared distance of coordinates
 
 /// All of a member but its place and its paths.
-FamilyMember ofCell(const SurrogateData& cell, const Preparation& plan) {
+FamilyMember ofCell(const SurrogateData& cell, const SurrogatePlan& plan) {
   FamilyMember member;
   member.reached = {cell.range.depth / plan.range.depth, cell.range.axis_depth / plan.range.axis_depth};
   member.scale = axisForce(cell.field, plan);
@@ -42,14 +42,14 @@ AxisCurve curveRatio(const AxisCurve& other, const FamilyMember& member, const F
   return axisRatio(other, axisCurve(field, scales), member.reached.axis_share);
 }
 
-Preparation planMember(const Family& family, const Scene& member) {
-  return Preparation::plan(member, family.range(member), PathSet::kFew);
+SurrogatePlan planMember(const Family& family, const Scene& member) {
+  return SurrogatePlan::plan(member, family.range(member), PathSet::kFew);
 }
 
 FamilyMember fitMember(const Family& family, const Eigen::VectorXd& coordinates,
                        const std::vector<TrainingResult>& results, Eigen::MatrixXf& displacements) {
   const Scene scene = family.member(coordinates);
-  const Preparation plan = planMember(family, scene);
+  const SurrogatePlan plan = planMember(family, scene);
   const SurrogateData cell = SurrogateData::fit(scene, plan, results);
   FamilyMember member = ofCell(cell, plan);
   member.coordinates = coordinates;
@@ -66,7 +66,7 @@ FamilyMember fitMember(const Family& family, const Eigen::VectorXd& coordinates,
 
 FamilyMember refitMember(const Family& family, const FamilyMember& member) {
   const Scene scene = family.member(member.coordinates);
-  const Preparation plan = planMember(family, scene);
+  const SurrogatePlan plan = planMember(family, scene);
   FamilyMember result = ofCell(SurrogateData::fitForces(scene, plan, trainingResults(plan, member.paths)), plan);
   result.coordinates = member.coordinates;
   result.paths = member.paths;

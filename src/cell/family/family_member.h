@@ -38,7 +38,7 @@ AxisCurve curveRatio(const AxisCurve& other, const FamilyMember& member, const F
                      const EnergyScales& scales);
 
 /// Plan of a member's paths.
-Preparation planMember(const Family& family, const Scene& member);
+SurrogatePlan planMember(const Family& family, const Scene& member);
 
 /// Fits a member to the results of planMember's paths. `displacements`: of SurfaceGrid (rows) at
 /// surfacePlaces (columns), over the cell's radius. Throws as SurrogateData::fit.

@@ -12,15 +12,15 @@ constexpr int kDeep = 6;                             ///< on the axis, below the
 
 }  // namespace
 
-PreparationRange familyRange(double angle, double depth) {
+SurrogateRange familyRange(double angle, double depth) {
   constexpr double kAxisDepth = 2.23606797749979, kLateral = 0.25;
   return {angle, depth, kAxisDepth * depth, kLateral * depth};
 }
 
-std::vector<ContactPlace> surfacePlaces(const PreparationRange& range) {
+std::vector<ContactPlace> surfacePlaces(const SurrogateRange& range) {
   std::vector<ContactPlace> places;
   std::vector<double> angles;
-  for (const TrainingRay& ray : Preparation::paths(range, PathSet::kAll)) {
+  for (const TrainingRay& ray : SurrogatePlan::paths(range, PathSet::kAll)) {
     if (ray.level != kCoarseLevel) continue;
     for (const double share : kShares) places.push_back({ray.angle, share * ray.target, share});
     if (std::find(angles.begin(), angles.end(), ray.angle) == angles.end()) angles.push_back(ray.angle);
@@ -34,7 +34,7 @@ std::vector<ContactPlace> surfacePlaces(const PreparationRange& range) {
 }
 
 Eigen::MatrixXd surfaceCentres() {
-  const PreparationRange unit = familyRange(1, 1);
+  const SurrogateRange unit = familyRange(1, 1);
   const std::vector<ContactPlace> places = surfacePlaces(unit);
   Eigen::MatrixXd centres(4, places.size());
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -43,7 +43,7 @@ Eigen::MatrixXd surfaceCentres() {
   return centres;
 }
 
-std::vector<ContactPlace> forcePlaces(const Preparation& plan) {
+std::vector<ContactPlace> forcePlaces(const SurrogatePlan& plan) {
   std::vector<ContactPlace> places;
   for (const TrainingRay& ray : plan.rays) {
     if (ray.level != kCoarseLevel) continue;

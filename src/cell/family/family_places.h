@@ -3,13 +3,13 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "cell/surrogate/preparation.h"
+#include "cell/surrogate/surrogate_plan.h"
 
 namespace microinjection {
 
 /// The range of a member. Its proportions are those of all members, so that they have the same
 /// paths in units of the range. `angle`: rad, `depth`: m.
-PreparationRange familyRange(double angle, double depth);
+SurrogateRange familyRange(double angle, double depth);
 
 /// A contact of the tip.
 struct ContactPlace {
@@ -21,13 +21,13 @@ struct ContactPlace {
 /// The places at which all members of a family store their surface: along every path of the range,
 /// below it on the axis, and the cell at rest. In units of the range they are the same for every
 /// member.
-std::vector<ContactPlace> surfacePlaces(const PreparationRange& range);
+std::vector<ContactPlace> surfacePlaces(const SurrogateRange& range);
 
 /// contactVariables of surfacePlaces, a column each.
 Eigen::MatrixXd surfaceCentres();
 
 /// The places at which two members' forces are compared: a few along each path that a member's cell
 /// is touched on.
-std::vector<ContactPlace> forcePlaces(const Preparation& plan);
+std::vector<ContactPlace> forcePlaces(const SurrogatePlan& plan);
 
 }  // namespace microinjection

@@ -24,7 +24,7 @@ std::vector<PathForces> pathForces(const std::vector<TrainingResult>& results) {
   return paths;
 }
 
-std::vector<TrainingResult> trainingResults(const Preparation& plan, const std::vector<PathForces>& paths) {
+std::vector<TrainingResult> trainingResults(const SurrogatePlan& plan, const std::vector<PathForces>& paths) {
   if (paths.size() != plan.rays.size()) throw std::runtime_error("the paths are of another plan");
   std::vector<TrainingResult> results;
   for (std::size_t i = 0; i < paths.size(); ++i) {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/bytes.h"
-#include "cell/surrogate/preparation.h"
+#include "cell/surrogate/surrogate_plan.h"
 #include "cell/surrogate/training_ray.h"
 
 namespace microinjection {
@@ -20,7 +20,7 @@ std::vector<PathForces> pathForces(const std::vector<TrainingResult>& results);
 
 /// The results of the plan's paths again, without surfaces. Throws std::runtime_error when the paths
 /// are not those of the plan.
-std::vector<TrainingResult> trainingResults(const Preparation& plan, const std::vector<PathForces>& paths);
+std::vector<TrainingResult> trainingResults(const SurrogatePlan& plan, const std::vector<PathForces>& paths);
 
 void write(ByteWriter& writer, const std::vector<PathForces>& paths);
 /// Throws std::runtime_error when a size or a value cannot be.

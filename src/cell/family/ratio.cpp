@@ -1,7 +1,5 @@
 #include "cell/family/ratio.h"
 
-#include <algorithm>
-
 #include "cell/model/similarity.h"
 
 namespace microinjection {
@@ -23,12 +21,6 @@ const std::vector<Ratio>& ratios() {
       {"core_modulus", true, 2, [](const Scene& scene) { return scene.cell.layers[1].material.young_modulus; },
        [](Scene& scene, double value) { scene.cell.layers[1].material.young_modulus = rounded(value); }}};
   return all;
-}
-
-const Ratio* findRatio(const std::string& name) {
-  const std::vector<Ratio>& all = ratios();
-  const auto found = std::find_if(all.begin(), all.end(), [&](const Ratio& ratio) { return ratio.name == name; });
-  return found == all.end() ? nullptr : &*found;
 }
 
 }  // namespace microinjection

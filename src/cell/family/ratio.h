@@ -21,7 +21,4 @@ struct Ratio {
 /// layers. `get` and `set` take a scene without dimension; `set` rounds as withoutDimension does.
 const std::vector<Ratio>& ratios();
 
-/// nullptr when there is none.
-const Ratio* findRatio(const std::string& name);
-
 }  // namespace microinjection

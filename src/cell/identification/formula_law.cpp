@@ -48,11 +48,6 @@ FormulaGeometry FormulaGeometry::of(const Scene& scene) {
   return result;
 }
 
-const std::vector<std::string>& formulaNames() {
-  static const std::vector<std::string> names = {"hertz", "cone", "shell", "membrane"};
-  return names;
-}
-
 std::unique_ptr<ElasticLaw> makeFormulaLaw(const std::string& name, const FormulaGeometry& geometry) {
   const double nu = geometry.poisson_ratio, plane = 1 - nu * nu;
   if (name == "hertz") {

@@ -27,6 +27,4 @@ struct FormulaGeometry {
 /// shell. Throws ConfigError when the geometry lacks something.
 std::unique_ptr<ElasticLaw> makeFormulaLaw(const std::string& name, const FormulaGeometry& geometry);
 
-const std::vector<std::string>& formulaNames();
-
 }  // namespace microinjection

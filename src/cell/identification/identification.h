@@ -20,7 +20,8 @@ struct Estimate {
   bool bounded = true;       ///< else the record does not bound it on one side: the border of the search is given
 };
 
-/// What a record says about a cell under one model.
+/// What a record says about a cell under one model. A fit gives numbers also with a wrong model, so the result has what
+/// shows that: intervals, the misfit of the model, and the comparison with cells of other layers.
 struct Identification {
   std::string model;  ///< one line
   std::vector<Estimate> estimates;
@@ -35,8 +36,8 @@ struct Identification {
   Eigen::VectorXd residuals;          ///< N, of each sample
   std::optional<RivalComparison> rivals;
 
-  /// Whether the model follows the record: the smooth part of the residuals is small, and no other cell
-  /// follows it clearly better.
+  /// Whether the model follows the record: the smooth part of the residuals is below 3 % of `size` or three times
+  /// `scatter`, and no other cell follows the record clearly better.
   bool consistent() const;
   const Estimate* find(const std::string& name) const;
   /// The first value of the cell whose interval is none: open, on the border of the search, or of no width; null: each
@@ -48,6 +49,8 @@ struct Identification {
 /// is decisive. They must be of the same record.
 std::vector<double> informationCriteria(const std::vector<Identification>& models);
 
+/// Whether the sensor's force drifts, linearly in time. A drift that is fitted without need takes a part of the cell's
+/// force in a record with a short approach, and one that is left out becomes a part of the modulus.
 enum class Drift { kAuto, kOn, kOff };
 
 struct IdentificationConfig {
@@ -66,7 +69,25 @@ struct IdentificationConfig {
 /// there are many.
 ForceCurve identifiedCurve(const ForceCurve& record);
 
-/// Fits a law to identifiedCurve(). Throws ConfigError when there is no contact in it or the fit fails.
+/// Fits a law to identifiedCurve():
+///
+///     record --> identifiedCurve() --> guessContact() --> fit of CurveModel --> intervals --> misfit --> rivals
+///                no frozen readings,   refused where      Cauchy's loss,        profile of    medians    other
+///                2000 means at most    nothing rises      noise from the        the           of 12      layers
+///                                      enough             residuals             likelihood    blocks
+///
+/// Contact point and offset are unknowns of the fit rather than read off the record first, because an error of the
+/// contact would go into the modulus unseen. Cauchy's loss takes the weight of outliers away. The intervals are those
+/// of the profile of the likelihood rather than of the Hessian, since the cost is not quadratic in the point where the
+/// force begins. The correlation of the residuals widens them, because samples that follow each other say less than
+/// their number, and so does the law's own error that of the modulus. In records 5 um deep at a noise of 10 nN, 97 % of
+/// them cover the truth (doc/reference/benchmarks.md, Identify).
+///
+/// At this depth the force of a shell with a soft inside is mostly that of a homogeneous cell, so a good fit alone says
+/// nothing about the layers: `rivals` compares the fit with cells of other layers.
+///
+/// Throws ConfigError when there is no contact in the curve, fewer than 24 samples are in contact, the fit does not
+/// converge, or Prony terms are asked of a record without a rising time.
 Identification identify(const ForceCurve& curve, const std::shared_ptr<ElasticLaw>& law,
                         const IdentificationConfig& config);
 

@@ -9,7 +9,7 @@
 
 namespace microinjection {
 
-/// A cell that could be under the same tip instead of the believed one: same size, other layers.
+/// A cell that could be under the same tip instead of the estimated one: same size, other layers.
 struct RivalCell {
   std::string description;  ///< "zona, shell_thickness 0.1, core_modulus 0.05"
   AxisShape shape;          ///< of the outermost layer's modulus

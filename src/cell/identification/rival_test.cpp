@@ -15,14 +15,14 @@ constexpr double kLawShape = 0.25;  ///< of a law's error, what fitted modulus a
 
 }  // namespace
 
-RivalComparison compareWithRivals(const BelievedCell& believed, const std::vector<RivalCell>& rivals,
+RivalComparison compareWithRivals(const EstimatedCell& estimated, const std::vector<RivalCell>& rivals,
                                   const AxisSamples& samples, const ShapeFitConfig& config, const ShapeFit& start) {
   RivalComparison result;
-  result.own = fitShape(believed.shape, samples, config, start, kNewtonSteps);
+  result.own = fitShape(estimated.shape, samples, config, start, kNewtonSteps);
   result.modulus_low = result.modulus_high = result.own.modulus;
   std::vector<ShapeFit> fits;
   const double depth = samples.travel.maxCoeff() - result.own.contact;
-  const double force = believed.shape.at(depth).force;
+  const double force = estimated.shape.at(depth).force;
   for (const RivalCell& rival : rivals) {
     ShapeFit from = result.own;
     from.modulus *= force / rival.shape.at(depth).force;
@@ -40,10 +40,11 @@ RivalComparison compareWithRivals(const BelievedCell& believed, const std::vecto
   double own_force = 0;
   for (Eigen::Index i = 0; i < samples.force.size(); ++i) {
     own_force += std::pow(
-        result.own.modulus * believed.shape.at(samples.travel[i] - result.own.contact).force / samples.deviation[i], 2);
+        result.own.modulus * estimated.shape.at(samples.travel[i] - result.own.contact).force / samples.deviation[i],
+        2);
   }
   const double gain = result.own.square - best->square;
-  const double scale = correlation + std::pow(kLawShape * believed.law_error, 2) * own_force;
+  const double scale = correlation + std::pow(kLawShape * estimated.law_error, 2) * own_force;
   result.advantage = gain / scale - 2 * kRatios;
   const double as_good = std::min(result.own.square, best->square) + kChiSquared95 * scale;
   for (const ShapeFit& fit : fits) {

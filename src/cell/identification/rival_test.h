@@ -8,8 +8,8 @@
 
 namespace microinjection {
 
-/// The believed cell.
-struct BelievedCell {
+/// The estimated cell.
+struct EstimatedCell {
   AxisShape shape;
   double law_error = 0;  ///< relative, median, of its force
 };
@@ -20,9 +20,9 @@ struct RivalComparison {
   std::string best;         ///< of the rivals
   double best_modulus = 0;  ///< Pa, of its outermost layer
   /// What the best rival gains by Akaike's criterion: the drop of the sum of squares over independent
-  /// samples and the believed cell's own error, less twice its two free ratios.
+  /// samples and the estimated cell's own error, less twice its two free ratios.
   double advantage = 0;
-  /// Pa, of the outermost layer, over all cells that follow the record as well as the believed one.
+  /// Pa, of the outermost layer, over all cells that follow the record as well as the estimated one.
   double modulus_low = 0, modulus_high = 0;
 
   /// Another cell is clearly better: above 10, the worse model has essentially no support (Burnham and
@@ -32,8 +32,8 @@ struct RivalComparison {
   bool layersAreKnown() const { return modulus_high < 1.25 * own.modulus && 1.25 * modulus_low > own.modulus; }
 };
 
-/// Fits all cells to the samples. `start`: of the believed cell's fit.
-RivalComparison compareWithRivals(const BelievedCell& believed, const std::vector<RivalCell>& rivals,
+/// Fits all cells to the samples. `start`: of the estimated cell's fit.
+RivalComparison compareWithRivals(const EstimatedCell& estimated, const std::vector<RivalCell>& rivals,
                                   const AxisSamples& samples, const ShapeFitConfig& config, const ShapeFit& start);
 
 }  // namespace microinjection

@@ -19,6 +19,16 @@ namespace microinjection {
 /// uses p g - p^2 / (2 kappa) instead of the penalty, which is the same for p = kappa g. Wd is the
 /// rest of the model's energy and also depends on volume changes.
 ///
+/// Cells are nearly incompressible (Poisson's ratio 0.49 in the paper's Table I), and elements without a pressure lock
+/// there: the force of P1 tetrahedra is 76 % too large, that of P2 triangles in the section 3.5 % (neo-Hookean, 5 um:
+/// doc/reference/benchmarks.md, Elements). So every material has to offer its volumetric energy apart. Each model takes
+/// its own dilatation g (tr e, tr E, ln J, J - 1, ...) rather than the usual split into J and J^(-1/3) F, because that
+/// split would turn the linear and the St-Venant-Kirchhoff law, which is the paper's, into other materials.
+///
+/// Strain and stress are those of space in every element: a section has F in the directions (r, theta, z), so that a
+/// material is written once. The scene chooses it by name for each layer, hence a virtual interface. material_models.h
+/// has the models with their sources, doc/maintain/material.md the way to a new one.
+///
 /// Matrices of 9 x 9: row and column i + 3 J stand for component (i, J), the column-major order of
 /// Eigen; symmetric. Stresses and tangents: @pre energyDensity(F) is finite.
 ///
@@ -60,8 +70,10 @@ class Material {
   /// g, zero in the undeformed state; dg/dF is the identity there.
   double dilatation(const Eigen::Matrix3d& F) const { return kinematics(F).dilatation; }
 
-  /// kappa, Pa, > 0: the model's lambda, or more when lambda is small or negative. It is at most
-  /// the model's bulk modulus, so that Wd, which contains (lambda - kappa)/2 g^2, stays stable.
+  /// kappa, Pa, > 0: the model's lambda or, where that is small or negative, the smaller one of mu and half of the bulk
+  /// modulus. Wd contains (lambda - kappa)/2 g^2, so a kappa above the bulk modulus leaves a Wd that gives way to
+  /// changes of volume. Of the six models only stable_neo_hookean has that, by mu/6, because its lambda is Hooke's plus
+  /// 5/6 mu.
   double dilatationalModulus() const { return kappa_; }
 
   /// The weighted sum of the parts, J/m^3, with its first and second derivative, Pa.
@@ -74,8 +86,9 @@ class Material {
   /// distortional Wd + p g at a fixed pressure p (Pa): mixed elements differentiate it with respect
   /// to F.
   static Weights mixed(double distortional, double pressure) { return {distortional, pressure, 0}; }
-  /// W - lambda/2 g^2, the part that relaxes in viscoelasticity. It differs from Wd if kappa
-  /// exceeds the model's lambda: Wd is then negative in a change of volume.
+  /// W - lambda/2 g^2, the part that relaxes in viscoelasticity. It differs from Wd if kappa exceeds the model's
+  /// lambda: Wd then contains a negative multiple of g^2, which makes it negative under a strong compression, and which
+  /// a Prony term would multiply.
   Weights relaxing() const { return {1, 0, -lambda_excess_}; }
 
   /// The stress is a linear function of the displacement gradient: small strain, one solution at
@@ -100,7 +113,9 @@ class Material {
   double lambda_excess_;  ///< Pa, lambda - kappa, <= 0; 0 for nearly incompressible materials
 };
 
-/// Material model, its two long-term elastic constants, and its viscoelasticity.
+/// Material model, its two long-term elastic constants, and its viscoelasticity. Every model is given by Hooke's
+/// constants at small strain, whatever its own are, so that a scene can change its model and keep its stiffness at the
+/// touch. The defaults are the paper's mouse oocyte (Table I).
 struct MaterialConfig {
   std::string model = "neo_hookean";  ///< one of materialModels()
   double young_modulus = 17.9e3;      ///< Pa, > 0

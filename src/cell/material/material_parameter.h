@@ -8,7 +8,7 @@
 namespace microinjection {
 
 /// A number of a material, and all that the rest of the house has to know of it: reading, checking, identity of
-/// prepared data and scaling go through this list. A new one is entered here and in MaterialConfig, and the model that
+/// surrogate data and scaling go through this list. A new one is entered here and in MaterialConfig, and the model that
 /// has it reads it.
 struct MaterialParameter {
   const char* name;  ///< key in a scene, member of MaterialConfig

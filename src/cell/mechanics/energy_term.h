@@ -19,6 +19,19 @@ struct LocalEnergy {
 /// Part of a system's energy that is a sum over elements: a body's elasticity, a surface's tension,
 /// the contact with a tip.
 ///
+/// Terms are energies rather than forces, also where physics dissipates: friction and viscosity take part with the
+/// incremental potential of the load step. The tangent of an energy is symmetric, so that Cholesky's factorisation
+/// applies; a stable equilibrium is one with a positive definite tangent; and LoadPath can compare the gain of energy
+/// with the tip's work, by which it notices a jump to another branch. A test of a new term checks its gradient and
+/// Hessian against differences by expectDerivatives() (test/cell/mechanics/term_derivatives.h).
+///
+/// A load step, in which the history of a term changes only at the end:
+///
+///     beginStep() --> evaluate() in each Newton iteration --> equilibrium --> settle() --false--> accept()
+///          ^                    ^                                                |
+///          |                    `----------- true: contact points changed -------'
+///          `-- no equilibrium: the step is repeated, half as long
+///
 /// The state is one vector of lengths, m: displacements, pressures scaled to lengths, and at its
 /// end the three coordinates of the tip's translation. A pressure is a Lagrange multiplier: the
 /// energy is stationary, not minimal.

@@ -30,12 +30,30 @@ struct Constraints {
 ///     [ K_ff  K_ft ] [ df ]   [ -r_f ]        r: derivative of the energy
 ///     [ K_tf  K_tt ] [ dt ] = [  dR  ]        R = r_t: the force on the tip that holds it there, N
 ///
-/// The pattern of K_ff and its symbolic factorisation are computed once.
+/// The tip's translation is given and not solved for, because a pipette is rigid beside a cell and its drive holds its
+/// position. Vertices that stick to a disc follow t as constraints, which needs no penalty and gives the force as a sum
+/// of their residuals; a rounded tip acts on t through the energy of its contact. The elimination of all unknowns but t
+/// leaves the 3 x 3 contact stiffness, with which a live cell extrapolates between two solutions.
+///
+/// Entries of the state are numbered once:
+///
+///     state     | u of the body ........................ | pressures ...... | t_x   t_y   t_z   |
+///     unknown_  | 0 1 2 tip(0) tip(1) tip(2) kFixed 3 .. | m-1 or internal  | tip(0) ... tip(2) |
+///
+///     free      | 0 ............ matrix_size_ | internal ............ free_size_ |
+///                 in K_ff                       eliminated in their elements
+///
+/// P2-P0's pressures are internal: once each of them is eliminated in its element (static condensation), K_ff is
+/// positive definite at a stable equilibrium, and Cholesky's factorisation is itself the test of stability. Continuous
+/// pressures stay in K_ff, which is then indefinite; SymmetricSolver counts the negative pivots instead.
+///
+/// The pattern of K_ff and its symbolic factorisation are computed once. One thread at a time.
 class EquilibriumSystem {
  public:
   using Terms = std::vector<std::shared_ptr<EnergyTerm>>;
 
-  /// Throws std::invalid_argument when nothing is free.
+  /// Throws std::invalid_argument when nothing is free. @pre constraints.entries has one value for each entry of the
+  /// state, and the tip's three entries are at its end; an internal entry is the last one of exactly one element
   EquilibriumSystem(Terms terms, Constraints constraints, SymmetricSolver::Method method);
 
   int freeSize() const { return free_size_; }

@@ -23,7 +23,9 @@ enum class Inversion {
   kAllowed   ///< the material's formulas give the energy
 };
 
-/// Thrown for a mesh with an element that is not positively oriented.
+/// Thrown for a mesh with an element that is not positively oriented. It is a type of its own because a swept mesh that
+/// is bent too far towards a contact point fails in this way: callers then tell the user that the needle is too far
+/// out.
 class InvertedElement : public std::invalid_argument {
  public:
   using std::invalid_argument::invalid_argument;
@@ -35,16 +37,36 @@ class InvertedElement : public std::invalid_argument {
 ///
 /// With a pressure p per element or vertex the dilatational energy kappa/2 g^2 of the material
 /// becomes p g - p^2 / (2 kappa), stationary in p: the same solution, without volumetric locking.
-/// The state's layout: displacement of node n, component k at Dim n + k; then pressures in units of
-/// pressureUnit(); then the tip's three. The body has no history (beginStep, accept and reset do
-/// nothing). It is immutable and can be shared between threads and systems.
+///
+/// The element is chosen at run time, because only measurements tell them apart. Error of the force, and time in space,
+/// on equal meshes (neo-Hookean disc, 5 um, Poisson's ratio 0.49; doc/reference/benchmarks.md, Elements):
+///
+///     element    section    space         time
+///     P1         +37.7 %    +75.7 %       0.14 s    the paper's; locks
+///     MINI        +9.0 %    +22.6 %       1.5 s
+///     P1-P1       +6.7 %    +18.5 %       1 s       stabilised
+///     P2          +3.5 %    no solution
+///     P2-P0       -0.1 %     +2.7 %       3.8 s     the default: its pressure is eliminated in the element
+///     P2-P1       -0.1 %     +1.3 %       56 s      continuous pressures, so the matrix is indefinite
+///
+/// Space and section share this class, since they differ in Strain<Dim> and in the weights only: a section's
+/// displacement over r is its hoop strain, and its weights are 2 pi r times those of the triangle.
+///
+/// The state's layout:
+///
+///     | u of node 0 | u of node 1 | ... | bubbles (MINI) | p_0 p_1 ... | t_x t_y t_z |
+///       Dim entries                       one an element   in units of    the tip's
+///                                                          pressureUnit()
+///
+/// A pressure in these units is a length like all other entries, so that one matrix holds both. The body has no history
+/// (beginStep, accept and reset do nothing; ViscousStress has that of a viscoelastic body). It is immutable and can be
+/// shared between threads and systems.
 template <int Dim>
 class LayeredBody : public EnergyTerm {
  public:
   using Materials = std::vector<std::shared_ptr<const Material>>;  ///< of each layer
 
-  /// Throws InvertedElement when an element is not positively oriented, std::invalid_argument when
-  /// a layer has no material.
+  /// Throws InvertedElement when an element is not positively oriented, or is of a layer without a material.
   LayeredBody(QuadraticMesh<Dim> mesh, ElementKind kind, Materials materials,
               Inversion inversion = Inversion::kRefused);
 
@@ -54,9 +76,11 @@ class LayeredBody : public EnergyTerm {
   int nodeCount() const { return node_count_; }  ///< nodes of displacement, bubbles at the end
   int pressureCount() const { return pressure_count_; }
   int stateSize() const { return Dim * node_count_ + pressure_count_ + 3; }
-  int tipEntry() const { return stateSize() - 3; }
-  bool isLinear() const;
-  double pressureUnit() const { return pressure_unit_; }  ///< Pa/m
+  int tipEntry() const { return stateSize() - 3; }  ///< the first of the tip's three entries of the state
+  bool isLinear() const;                            ///< the materials of all layers are
+  /// Pa/m: the largest shear modulus of the layers over the mean size of an element, so that the coupling of pressures
+  /// and displacements is of the stiffness's size.
+  double pressureUnit() const { return pressure_unit_; }
 
   int elementCount() const override { return static_cast<int>(entries_.size()); }
   /// Displacements component by component, then pressures.
@@ -67,7 +91,7 @@ class LayeredBody : public EnergyTerm {
   Eigen::Matrix3d deformationGradient(int element, int point, const Eigen::VectorXd& state) const;
   int pointCount() const { return point_count_; }  ///< per element
 
-  /// Smallest det F of all quadrature points.
+  /// Smallest det F of all quadrature points: 1 at rest, <= 0 where an element is inverted there.
   double smallestJacobian(const Eigen::VectorXd& state) const;
 
   /// Undeformed volume of the body, m^3.
@@ -79,7 +103,7 @@ class LayeredBody : public EnergyTerm {
   auto withNodes(Function&& function) const;
   template <int N>
   using Derivatives = Eigen::Map<const Eigen::Matrix<double, N, 3>>;
-  /// Derivatives of the shape functions, 1/m: see Strain.
+  /// Derivatives of the shape functions, 1/m: see Strain. @pre N is what withNodes() passes
   template <int N>
   Derivatives<N> derivatives(int element, int point) const;
   double weight(int element, int point) const { return weights_[element * point_count_ + point]; }  ///< m^3

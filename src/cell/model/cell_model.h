@@ -12,15 +12,28 @@ namespace microinjection {
 
 struct Scene;
 
-/// Force of the cell on the tip in one step.
+/// Force of the cell on the tip in one step. A force that cannot be trusted is invalid, and never a guess: on an
+/// invalid force the controller holds the needle, whereas it would act on a guess. Forces that faded out at the end of
+/// a model's range, for example, were detected as punctures (doc/design/surrogate_cell.md).
 struct TipForce {
   bool valid = true;  ///< false: the force at the tip's pose is not valid; `force` is then zero
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< N, of the cell on the tip
 };
 
-/// A cell model that serves a moving needle at the needle's rate: contact, force, and punctures
-/// (PuncturableCell). Frame: the cell's centre at rest is the origin, the holding pipette is below.
-/// Call all functions in the thread that steps, except deformedSurface().
+/// A cell model that serves a moving needle at the needle's rate: contact, force, and punctures. The node that steps
+/// the cell and the thread that publishes its surface know this interface only, so a session is the same whichever
+/// model serves it; makeCellModel chooses one by measured error and time. Height and membranes are decorators, because
+/// they are the same for every model:
+///
+///     needle's pose --> PlacedCell --> PuncturableCell --> SurrogateCellModel   a fit to solutions: microseconds
+///                        height         membranes,         LiveCellModel        a solver thread, extrapolated
+///                                       shaft in the cell  ExplicitCellModel    the paper's dynamics
+///
+/// The model itself finds first contact and decides when a contact ends, because the end depends on its mechanics: a
+/// surface that sticks to the tip follows it a little beyond its place at rest.
+///
+/// Frame: the cell's centre at rest is the origin, the holding pipette is below (-z). Call all functions in the thread
+/// that steps, except deformedSurface(). `tip` is the tip's lowest point, or the centre of a disc.
 class CellModel {
  public:
   struct Contact {
@@ -58,7 +71,8 @@ class CellModel {
     bool inside = false;       ///< the tip is through the outermost layer
     double depth = 0;          ///< m along the pipette, of the tip below the surface at rest, while inside
   };
-  /// Data of the last solution, or of the model's present state.
+  /// Data of the last solution, or of the model's present state. `cpu_time` is that of the thread that solves, and
+  /// `age` the time since the solution was requested; both are 0 for a model that does not solve.
   struct Solution {
     Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();  ///< N/m, force changes by -stiffness dx
     int newton_iterations = 0;
@@ -69,8 +83,8 @@ class CellModel {
 
   virtual ~CellModel() = default;
 
-  /// Force for the tip at `tip` (m) with the pipette along `axis` (unit, out of the cell) at `time`
-  /// (s, increasing).
+  /// Force for the tip at `tip` (m) with the pipette along `axis` (unit, out of the cell) at `time` (s, increasing).
+  /// A pose that is not finite, or that the model cannot serve, gives an invalid force.
   virtual TipForce step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time) = 0;
 
   /// Removes the contact after a membrane has failed. The next step() finds a new one.
@@ -87,8 +101,8 @@ class CellModel {
   virtual std::vector<std::array<int, 3>> triangles() const = 0;  ///< of the surface, counter-clockwise outside
   virtual std::vector<std::uint32_t> held() const = 0;            ///< vertices of the surface in the holding pipette
   virtual std::vector<BorderTriangle> borders() const { return {}; }  ///< between layers
-  /// Surface at the last step. One thread of any priority may call it while another one steps;
-  /// neither blocks.
+  /// Surface at the last step. One thread of any priority may call it while another one steps; neither blocks, so that
+  /// drawing at 60 Hz cannot delay a force at 1 kHz.
   virtual DeformedSurface deformedSurface() = 0;
 };
 

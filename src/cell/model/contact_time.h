@@ -4,7 +4,7 @@
 #include <limits>
 #include <optional>
 
-#include "cell/model/online_cell.h"
+#include "cell/model/live_cell.h"
 
 namespace microinjection {
 

@@ -40,7 +40,7 @@ struct ConvergedForceConfig {
   };
   Model model = Model::kAuto;
   ElementKind element = ElementKind::kP2P0;
-  double tolerance = 0.005;  ///< required relative error of the force
+  double tolerance = 0.005;  ///< relative error of the force below which a depth is not refined further
   double finest = 6;         ///< last level of refinement that may be tried, see scene_mesh.h
   /// s of wall time after which no third or finer level is started. Infinite: a mesh that does not fit into the memory
   /// is an error, for the forces must not depend on the machine. Else the forces of the coarser ones are kept.
@@ -53,8 +53,8 @@ struct ForcePoint {
   bool converged = false;
   std::string reason;  ///< why it did not converge, or why no finer mesh has a solution; else empty
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< N, of the cell on the needle
-  /// Relative, from the last two levels. On withdrawal, where the force changes its sign, it is
-  /// relative to the largest force of the path.
+  /// Relative, from the last two levels, of a disc in the section from the last three. On withdrawal, where the force
+  /// changes its sign, it is relative to the largest force of the path.
   double error_estimate = std::numeric_limits<double>::quiet_NaN();
   double level = -1;     ///< of the mesh that gave the force
   double wall_time = 0;  ///< s, of all levels
@@ -69,16 +69,30 @@ struct LevelReport {
   std::vector<double> forces;  ///< N, magnitude at each depth (order of Indenting::depth), nan without solution
 };
 
-/// Solves a scene on successively finer meshes until two of them agree to the tolerance at every
-/// depth. Elements at the needle's edge are refined by a factor from mesh to mesh (2 in the
-/// section, sqrt 2 in space). The error is of first order in their size, or better, so that the
-/// finer mesh's error is at most the change over (factor - 1). A depth is converged when at least
-/// two meshes have an equilibrium there, and the second is the finest that was needed. If finer
-/// meshes lose the solution before a depth that only one coarse mesh reaches, the force there is
-/// not valid, and the point reports it.
+/// Solves a scene on successively finer meshes until two of them agree to the tolerance at every depth: the force that
+/// `indent` prints, and the reference for the error of a live cell (measureLiveCell). One mesh, however fine, would
+/// give a force of unknown error, and the error differs between scenes, because the sharp edge of a disc or the border
+/// of a moving contact governs it.
+///
+///     level          l        l + step     l + 2 step            elements at the needle: size at 0 over 2^level
+///     force          F_0  -->  F_1  ----->  F_2                  step 1 (factor 2) in the section, which is cheap,
+///     estimate              |F_1 - F_0|   |F_2 - F_1|                 1/2 (factor sqrt 2) in space
+///                           -----------   -----------
+///                           factor - 1    factor - 1
+///
+/// The error is of first order in the size of these elements, or better, so that the finer mesh's error is at most the
+/// change over (factor - 1) (Richardson). A disc in the section needs three meshes, and the larger of the last two
+/// changes counts, because two meshes may agree by chance. Only the elements at the needle, and those at the mouth,
+/// follow the level; those far away are refined more slowly, since they matter less.
+///
+/// A point is `converged` when at least two meshes have an equilibrium there. That does not promise the tolerance: time
+/// or the finest level may end the refinement before, and `error_estimate` says what was reached. Under a sharp disc
+/// finer meshes lose the solution earlier, so each depth takes the finest mesh that reaches it. A force that only one
+/// mesh has is not valid, and the point says why.
 class ConvergedForce {
  public:
-  /// Throws ConfigError when the model does not fit the scene.
+  /// Throws ConfigError when the scene is not valid or a tensegrity, the withdrawal does not decrease, or the
+  /// axisymmetric model is asked for with a needle or a motion beside the axis.
   ConvergedForce(const Scene& scene, const Indenting& indenting, const ConvergedForceConfig& config);
 
   /// `report` is called after each mesh. Throws ConfigError when the needle is too far from the

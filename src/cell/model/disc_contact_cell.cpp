@@ -35,7 +35,7 @@ ContactPoint DiscContactCell::contactAt(const Eigen::Vector3d& contact_point, co
   return {contact_point, patchAt(contact_point, axis)};
 }
 
-OnlineCell::Surface DiscContactCell::undeformedSurface() const {
+LiveCell::Surface DiscContactCell::undeformedSurface() const {
   return {surface_.vertices, surface_.triangles, onSurface({held_vertices_})};
 }
 

@@ -8,13 +8,13 @@
 #include "cell/contact/ray_cast.h"
 #include "cell/contact/tip_patch.h"
 #include "cell/mesh/surface_mesh.h"
-#include "cell/model/online_cell.h"
+#include "cell/model/live_cell.h"
 #include "cell/model/scene.h"
 
 namespace microinjection {
 
 /// A live cell with a surface of triangles and a disc tip. Vertices under the disc stick to it.
-class DiscContactCell : public OnlineCell {
+class DiscContactCell : public LiveCell {
  public:
   const Scene& scene() const override { return scene_; }
   const SurfaceMesh& surface() const { return surface_; }  ///< at rest; mesh_vertices ascend

@@ -23,12 +23,24 @@ struct ExplicitCellModelConfig {
 
 /// The paper's own loop: P1 tetrahedra and central differences at the rate of the haptic device
 /// (equation (13) of Ladjal, Hanus, Ferreira, "Micro-to-nano biomechanical modeling for assisted
-/// biological cell injection").
+/// biological cell injection"). It is there to feel and to measure that loop; LiveCellModel solves the same tetrahedra
+/// for their equilibrium, whose force depends neither on a mass nor on a time step.
 ///
-/// The cell's true mass would need steps of some 10 ns. The mass is scaled so that `time_step` is
-/// stable for the undeformed cell; description() says how far the force then lags behind the
-/// needle. The force is that of the vertices under the tip, and includes their inertia's reaction.
-/// For a homogeneous cell and a disc tip.
+/// An explicit step needs no equations to be solved, but it is stable only while it is shorter than the time in which a
+/// sound wave crosses an element. At the cell's true mass that is some 20 ns for the 604 vertices of the benchmark, so
+/// a millisecond of the needle would need some 50,000 steps. The mass is therefore scaled until `time_step` is stable
+/// for the undeformed cell: 9e7 times there (doc/reference/benchmarks.md, The paper's explicit dynamics). The price is
+/// a force that lags: it settles in 0.32 s, and a linear cell's is 97 to 390 % too large at 5 to 100 um/s, locking
+/// included. description() has mass scale and settling time of the cell at hand. The damping is critical for a shear
+/// wave of two diameters, about the slowest motion of the cell, so that the force settles without ringing.
+///
+/// The bound of the step is that of the undeformed cell (frequencyBound), and half of it is used, because the cell
+/// stiffens when it is pressed. A step that is unstable all the same is found by its energy: a stable cell cannot move
+/// with much more than the needle has put in. The force is then invalid until the needle is withdrawn, and so it is
+/// while an element is inverted. A linear cell has no inversion.
+///
+/// The force is that of the vertices under the tip, and includes their inertia's reaction. For a homogeneous cell and a
+/// disc tip.
 class ExplicitCellModel : public CellModel {
  public:
   /// Throws ConfigError for a scene that P1Cell refuses, more than one layer, or a material that is
@@ -38,7 +50,8 @@ class ExplicitCellModel : public CellModel {
   /// What the model is, and its error in plain words.
   std::string description() const;
 
-  /// Advances the dynamics to `time`, at most by 0.01 s; the tip moves there in a straight line.
+  /// Advances the dynamics to `time`, at most by 0.01 s; the tip moves there in a straight line. What is left of a
+  /// longer gap is dropped, so that one late step does not make the next ones late by catching up.
   TipForce step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time) override;
   /// Restores the undeformed cell: after a puncture nothing steps it until the next contact.
   void release() override;
@@ -79,7 +92,7 @@ class ExplicitCellModel : public CellModel {
   bool may_invert_ = false, touches_held_ = false, unstable_ = false, inverted_ = false;
   Shape drawn_;
   std::string invalid_reason_;
-  int hint_ = 0;  ///< see OnlineCell::touch
+  int hint_ = 0;  ///< see LiveCell::touch
   LatestValue<Shape> shape_;
 };
 

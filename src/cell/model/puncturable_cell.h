@@ -16,7 +16,18 @@
 
 namespace microinjection {
 
-/// Any cell under a needle, with membranes that fail according to scene.cell.puncture.
+/// Any cell under a needle, with membranes that fail according to scene.cell.puncture. It is a decorator, so that every
+/// cell model can be punctured and none of them has to know how.
+///
+///             touch                layer 0 fails               the last layer fails
+///     free ----------> contact ---------------------> in a hole ---------------------> through
+///      ^ |            (inner cell)                     ^ (springs)                     (shaft)
+///      | `-------- the needle's line meets a hole -----'     |                            |
+///      `------------------ the tip is off the cell at rest <-+----------------------------'
+///
+/// The cell behind the hole is springs and friction instead of a solved cell with a crack, because only the force that
+/// breaks the zona is measured (7.5 uN at 45 um, section V.A of the paper): nothing is known that a finer model could
+/// be fitted to. doc/design/mechanics.md, Puncture, lists each part, doc/reference/scene_file.md the keys.
 ///
 /// The outermost layer fails by the force, the indentation or the nominal strain of the inner
 /// cell's contact. That cell then returns to rest, with a hole at the contact point. Each further
@@ -34,6 +45,7 @@ namespace microinjection {
 /// It returns at most the work of the needle since first contact. The remaining forces are passive.
 class PuncturableCell : public CellModel {
  public:
+  /// `cell`: the model of the same scene's cell without a puncture. @pre scene.validate() does not throw
   PuncturableCell(const Scene& scene, std::unique_ptr<CellModel> cell);
 
   /// O(1), apart from the inner cell; does not allocate or lock.
@@ -60,7 +72,7 @@ class PuncturableCell : public CellModel {
 
   TipForce computeForce(const Pose& pose);
   TipForce contactForce(const Pose& pose);
-  void followRadius();
+  void followRadius();  ///< moves the holes with a surface whose radius has changed
   Eigen::Vector3d forceInside(const Pose& pose);
   void enter(int hole, const Pose& pose);
   void leave(const Pose& pose);

@@ -16,8 +16,27 @@
 namespace microinjection {
 
 /// One cell, the pipette that holds it and the needle that enters it: the contents of a scene file
-/// (config/cells/*.yaml), SI units. The cell's centre is the origin; the needle comes from above
-/// along -z.
+/// (config/cells/*.yaml, keys in doc/reference/scene_file.md), SI units. The cell's centre is the origin; the needle
+/// comes from above along -z.
+///
+///                 z
+///               | : |       needle: tip radius, offset (x, y) of its line
+///               | : |
+///                `-'
+///             .--:--.
+///           .'  .-.  `.
+///          /   /   \   \    layers, outermost first, each bonded to its neighbours
+///         (   (  +..)...)........ x
+///          \   \   /   /
+///           `.  `-'  .'
+///             |--:--|       holding pipette: its mouth sticks to a circle of `contact_radius`
+///             |  :  |
+///
+/// Every model reads this one struct, so that a converged, a live and a surrogate force of one file can be compared.
+/// The layers are spheres rather than measured outlines for two reasons: a mouse oocyte is out of round by 0.5 % in the
+/// mean and 3.7 % at most (section V.A of the paper, doc/reference/paper.md), and a body of revolution can be solved in
+/// its section, in seconds. The defaults are the paper's (Table I: 56 um, 17.9 kPa, 0.49; section IV.A: a zone of five
+/// needle diameters, five times finer). Tip and holding radius are assumed, because the paper does not give them.
 struct Scene {
   /// A ball or, around another layer, a spherical shell, bonded to its neighbours.
   struct Layer {
@@ -42,9 +61,13 @@ struct Scene {
     std::vector<double> outerRadii() const;                              ///< m, of each layer
     std::vector<std::shared_ptr<const Material>> makeMaterials() const;  ///< of each layer
   };
+  /// The surface in the mouth is fixed, as in the paper (III.B). The suction that deforms it there is not modelled.
   struct HoldingPipette {
     double contact_radius = 10e-6;  ///< m, of the circle on the surface that sticks to the mouth
   };
+  /// A disc is the paper's nodal contact: the vertices under it stick to it. Its sharp edge folds the surface of a
+  /// nonlinear cell, so a converged force ends early: 8 um deep with elements of 0.4 um at the edge, compared with 45
+  /// um under a hemisphere (doc/reference/benchmarks.md, Where a converged force ends).
   struct Tip {
     std::string shape = "disc";  ///< one of tipShapes()
     double radius = 3e-6;        ///< m, of the disc or of the shaft
@@ -64,6 +87,8 @@ struct Scene {
     Contact contact;
     Eigen::Vector2d offset = Eigen::Vector2d::Zero();  ///< m, (x, y) of the needle's line
   };
+  /// Of P1Cell's mesh. The meshes of all other continua follow the radii of tip, cell and holding pipette
+  /// (scene_mesh.h).
   struct Refinement {
     double zone = 5;     ///< diameter of the puncture zone in needle diameters
     double density = 5;  ///< ratio of the element sizes outside and inside of the zone
@@ -92,7 +117,8 @@ struct Scene {
   /// 0.3 of the diameter (a finer tip in a large cell needs a higher density); m.
   double meshSize() const;
 
-  /// Throws ConfigError with all errors at once.
+  /// Checks what no cell of any size can have, such as a tip wider than the cell: a scene without dimension (radius 1)
+  /// is valid. parseScene also refuses sizes that no real cell has. Throws ConfigError with all errors at once.
   void validate() const;
   /// Throws ConfigError that names the purpose for a tensegrity cell, which has no mesh of its
   /// inside.
@@ -102,10 +128,10 @@ struct Scene {
 /// disc (flat, with a sharp edge), hemisphere, rounded_flat.
 const std::vector<std::string>& tipShapes();
 
-/// Reads a scene file; ConfigError names file, key, value and what is allowed.
+/// Reads a scene file and validates it; ConfigError names file, line, key, value and what is allowed.
 Scene loadScene(const std::string& path);
 
-/// As loadScene; `origin` names the source in messages.
+/// As loadScene, for a scene that is no file of its own; `origin` names the source in messages, which have no line.
 Scene parseScene(const YAML::Node& node, const std::string& origin);
 
 }  // namespace microinjection

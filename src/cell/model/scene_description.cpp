@@ -8,7 +8,7 @@ namespace microinjection {
 
 namespace {
 
-/// A new number changes the identity of the cells alone that have it: the prepared data of all others stay good.
+/// A new number changes the identity of the cells alone that have it: the surrogate data of all others stay good.
 bool isDescribed(const MaterialParameter& parameter, const std::string& model) {
   const bool was_first = parameter.value == &MaterialConfig::mooney_ratio;  // in every text, from the beginning
   return parameter.ofAllModels() || model == parameter.model || was_first;

@@ -9,8 +9,9 @@ namespace microinjection {
 ///
 ///     F = E R^2 f(u / R; ratios of lengths, ratios of moduli, tension / (E R), Poisson's ratios),
 ///
-/// because the equilibrium has no other length and no other stress. So one solution serves every
-/// cell of the same ratios.
+/// because the equilibrium has no other length and no other stress. So one solution serves every cell of the same
+/// ratios: surrogate data are stored in these units, and a family needs to vary ratios only, not sizes and moduli. The
+/// radius of the outermost layer and its modulus are the units because every scene has them.
 struct Similarity {
   double length = 1;   ///< m
   double modulus = 1;  ///< Pa
@@ -23,7 +24,8 @@ struct Similarity {
 
 /// The scene in its own units: of radius 1 and modulus 1. Every ratio is rounded to 12 digits, so
 /// that scaled scenes become the same to the last bit. Puncture, biomembrane and a tensegrity's
-/// parameters keep their SI units: they do not belong to the elastic equilibrium.
+/// parameters keep their SI units: they do not belong to the elastic equilibrium. So do viscosity and relaxation times;
+/// a caller that compares scenes takes SurrogatePlan::elastic() first.
 Scene withoutDimension(const Scene& scene);
 
 /// `value` to 12 significant digits.

@@ -8,7 +8,7 @@
 
 namespace microinjection {
 
-SolutionThread::SolutionThread(std::shared_ptr<const OnlineCell> cell)
+SolutionThread::SolutionThread(std::shared_ptr<const LiveCell> cell)
     : cell_(std::move(cell)), thread_([this] { run(); }) {}
 
 SolutionThread::~SolutionThread() {

@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "cell/model/online_cell.h"
+#include "cell/model/live_cell.h"
 
 namespace microinjection {
 
@@ -27,7 +27,7 @@ struct CellSolution {
 /// requesting thread never blocks, except in wait(), and never frees a solution.
 class SolutionThread {
  public:
-  explicit SolutionThread(std::shared_ptr<const OnlineCell> cell);
+  explicit SolutionThread(std::shared_ptr<const LiveCell> cell);
   ~SolutionThread();
   SolutionThread(const SolutionThread&) = delete;
   SolutionThread& operator=(const SolutionThread&) = delete;
@@ -49,7 +49,7 @@ class SolutionThread {
   void run();
   std::shared_ptr<const CellSolution> solve(const Request& request);
 
-  std::shared_ptr<const OnlineCell> cell_;
+  std::shared_ptr<const LiveCell> cell_;
   std::unique_ptr<TipPath> path_;  ///< used by the solving thread only
   ContactPoint contact_point_;     ///< used by the solving thread only
   /// Used by the solving thread only: all solutions that others may still use. It drops those that

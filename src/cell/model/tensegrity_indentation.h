@@ -8,7 +8,7 @@
 #include "cell/contact/tip_patch.h"
 #include "cell/model/cell_model.h"
 #include "cell/model/contact_time.h"
-#include "cell/model/online_cell.h"
+#include "cell/model/live_cell.h"
 #include "cell/tensegrity/tensegrity_loading.h"
 
 namespace microinjection {

@@ -54,7 +54,7 @@ Eigen::VectorXf turned(const Outline& outline, const Eigen::VectorXd& surface) {
 }  // namespace
 
 std::vector<TrainingSample> solveAxis(const Scene& scene, const std::vector<double>& depths) {
-  Scene axial = Preparation::elastic(scene);
+  Scene axial = SurrogatePlan::elastic(scene);
   axial.needle.offset.setZero();
   const Eigen::VectorXd surface = SurfaceGrid::standard().nodes(scene.radius(), 0);
   std::vector<TrainingSample> samples;

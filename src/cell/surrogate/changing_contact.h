@@ -8,7 +8,7 @@
 
 namespace microinjection {
 
-/// A needle's contact with a prepared cell that may be replaced at any time, also in contact. The
+/// A needle's contact with a surrogate cell that may be replaced at any time, also in contact. The
 /// force then changes from the one cell's to the other's in kDuration. A contact keeps its place:
 /// the surface of a cell of another size is where the needle has felt it, until the needle is clear
 /// of both.

@@ -35,9 +35,26 @@ struct EnergyDegrees {
 /// displacement, that are invariant when both are rotated or mirrored together; polynomials in a
 /// and w are the spherical harmonics. t^2 and powers of s represent both a sticking patch (E ~ t^2
 /// at first) and a round tip (t^(5/2), Hertz). For a force, t replaces t^2 and N replaces J.
+///
+/// Depth and lateral motion have one unit, `length`, because units of their own ranges would make all real directions
+/// steep ones: on a path that was left out of the fit the force was then off by 10 % instead of 1 %. The overlap of the
+/// tip with the cell at rest says too little as a variable, since a sticking tip drags the surface along
+/// (doc/design/surrogate_cell.md, What was tried). The expansion is linear in its coefficients, so a fit is one
+/// least-squares problem (energy_fit.h), and the members of a family are interpolated coefficient by coefficient.
+///
+/// Coefficients, with the default degrees (50 terms of 8 each):
+///
+///     coefficients_   | term (i, j, k): n = 0 .. distance | next term ... |       all contact points
+///                              | makeLocal(): sum over i at one angle
+///                              v
+///     Local           column (j, k): n = 0 .. distance (rows), 25 columns         one contact point
+///
+/// A contact point does not change during its contact, so the sum over i is done once, at the touch.
 class EnergyExpansion {
  public:
   EnergyExpansion() = default;
+  /// All coefficients are zero. Throws std::invalid_argument for a degree above 15, no degree in the length, or a root
+  /// that is not 1 or 2.
   EnergyExpansion(const EnergyScales& scales, const EnergyDegrees& degrees);
 
   const EnergyScales& scales() const { return scales_; }
@@ -52,7 +69,7 @@ class EnergyExpansion {
   void basis(double angle, const Eigen::Vector3d& displacement, Eigen::VectorXd& energy,
              Eigen::Matrix3Xd& gradient) const;
 
-  /// See energy_fit.h.
+  /// See energy_fit.h. Throws std::invalid_argument when they are not size() many.
   void setCoefficients(Eigen::VectorXd coefficients);
   const Eigen::VectorXd& coefficients() const { return coefficients_; }
 

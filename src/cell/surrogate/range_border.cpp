@@ -19,7 +19,7 @@ Jet saturate(const Jet& x) {
 }
 
 /// Lateral range, m, as a function of the depth.
-Jet lateralRange(const PreparationRange& range, const Jet& depth) {
+Jet lateralRange(const SurrogateRange& range, const Jet& depth) {
   Jet result;
   result.value = range.lateral;
   if (depth.value <= range.depth) return result;
@@ -45,8 +45,7 @@ Jet steepen(const Jet& slope) {
 
 }  // namespace
 
-LimitedDisplacement::LimitedDisplacement(const PreparationRange& range, bool on_axis,
-                                         const Eigen::Vector3d& displacement)
+LimitedDisplacement::LimitedDisplacement(const SurrogateRange& range, bool on_axis, const Eigen::Vector3d& displacement)
     : coordinates{Jet::coordinate(0, displacement.x()), Jet::coordinate(1, displacement.y()),
                   Jet::coordinate(2, displacement.z())} {
   const double deepest = on_axis ? range.axis_depth : range.depth;

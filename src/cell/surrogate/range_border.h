@@ -4,11 +4,11 @@
 #include <array>
 
 #include "cell/surrogate/jet.h"
-#include "cell/surrogate/preparation.h"
+#include "cell/surrogate/surrogate_plan.h"
 
 namespace microinjection {
 
-/// A tip's displacement limited to the prepared range. Within the range it is unchanged; outside,
+/// A tip's displacement limited to the surrogate's range. Within the range it is unchanged; outside,
 /// and for paths flatter than the prepared ones, it saturates smoothly. An energy of it is smooth
 /// everywhere, so that the force fades continuously beyond the range without creating energy.
 struct LimitedDisplacement {
@@ -17,7 +17,7 @@ struct LimitedDisplacement {
   bool too_deep = false;           ///< deeper than the range
 
   /// `on_axis`: the contact point is on the cell's axis, where the range is deeper.
-  LimitedDisplacement(const PreparationRange& range, bool on_axis, const Eigen::Vector3d& displacement);
+  LimitedDisplacement(const SurrogateRange& range, bool on_axis, const Eigen::Vector3d& displacement);
 
   Eigen::Vector3d value() const;
   /// Turns a function of the coordinates, with derivatives by them, into one of the displacement.

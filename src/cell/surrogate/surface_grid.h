@@ -7,7 +7,7 @@
 
 namespace microinjection {
 
-/// Nodes on a cell's undeformed sphere at which prepared cells store their surface. They lie in
+/// Nodes on a cell's undeformed sphere at which surrogate cells store their surface. They lie in
 /// rings about the contact point: narrow under the tip, wide on the far side. The grid is the same
 /// for every cell and mesh, so that surfaces of different cells can be combined. Its half y < 0 is
 /// the mirror image of the other.

@@ -32,12 +32,12 @@ Eigen::MatrixXd readMatrix(ByteReader& reader) {
 
 }  // namespace
 
-Eigen::Vector4d contactVariables(const PreparationRange& range, double angle, const Eigen::Vector3d& displacement) {
+Eigen::Vector4d contactVariables(const SurrogateRange& range, double angle, const Eigen::Vector3d& displacement) {
   return {angle / range.angle, displacement.x() / range.lateral, displacement.y() / range.lateral,
           -displacement.z() / range.depth};
 }
 
-SurfaceShape::SurfaceShape(const PreparationRange& range, double radius, const std::vector<double>& angles,
+SurfaceShape::SurfaceShape(const SurrogateRange& range, double radius, const std::vector<double>& angles,
                            const std::vector<TrainingSample>& samples)
     : range_(range), radius_(radius) {
   const auto count = static_cast<Eigen::Index>(samples.size()), at_rest = static_cast<Eigen::Index>(angles.size());
@@ -63,7 +63,7 @@ SurfaceShape::SurfaceShape(const PreparationRange& range, double radius, const s
   weights_ = radialWeights(centres_, amplitudes);
 }
 
-SurfaceShape::SurfaceShape(const PreparationRange& range, double radius, const Eigen::MatrixXd& centres,
+SurfaceShape::SurfaceShape(const SurrogateRange& range, double radius, const Eigen::MatrixXd& centres,
                            const Eigen::MatrixXd& amplitudes, const Eigen::MatrixXf& modes)
     : range_(range), radius_(radius), centres_(centres), weights_(radialWeights(centres, amplitudes)), modes_(modes) {
   if (!consistent()) throw std::invalid_argument("SurfaceShape: sizes do not fit");
@@ -102,7 +102,7 @@ void SurfaceShape::write(ByteWriter& writer) const {
 
 SurfaceShape SurfaceShape::read(ByteReader& reader) {
   SurfaceShape shape;
-  PreparationRange& range = shape.range_;
+  SurrogateRange& range = shape.range_;
   for (double* x : {&range.angle, &range.depth, &range.axis_depth, &range.lateral, &shape.radius_}) {
     *x = reader.number<double>();
   }

@@ -9,7 +9,7 @@
 namespace microinjection {
 
 /// Places of a contact in units of the range: contact angle, displacement of the tip.
-Eigen::Vector4d contactVariables(const PreparationRange& range, double angle, const Eigen::Vector3d& displacement);
+Eigen::Vector4d contactVariables(const SurrogateRange& range, double angle, const Eigen::Vector3d& displacement);
 
 /// Shape of the cell's surface as a function of contact point and displacement of the tip. It has
 /// few modes (proper orthogonal decomposition), whose amplitudes are interpolated by radial basis
@@ -19,12 +19,12 @@ class SurfaceShape {
  public:
   SurfaceShape() = default;
   /// Fits training samples, and the cell at rest for the `angles` (rad). `radius` (m): of the cell.
-  SurfaceShape(const PreparationRange& range, double radius, const std::vector<double>& angles,
+  SurfaceShape(const SurrogateRange& range, double radius, const std::vector<double>& angles,
                const std::vector<TrainingSample>& samples);
   /// @param centres contactVariables, a column each
   /// @param amplitudes of the modes (columns) at each centre (rows)
   /// @param modes m, a column each
-  SurfaceShape(const PreparationRange& range, double radius, const Eigen::MatrixXd& centres,
+  SurfaceShape(const SurrogateRange& range, double radius, const Eigen::MatrixXd& centres,
                const Eigen::MatrixXd& amplitudes, const Eigen::MatrixXf& modes);
 
   /// Changes to a unit of length, given in the new one.
@@ -42,7 +42,7 @@ class SurfaceShape {
   bool consistent() const;  ///< sizes
   bool finite() const;      ///< values
 
-  PreparationRange range_;
+  SurrogateRange range_;
   double radius_ = 0;
   Eigen::MatrixXd centres_;  ///< a column each
   Eigen::MatrixXd weights_;  ///< of radialBasis (rows), for each mode (columns)

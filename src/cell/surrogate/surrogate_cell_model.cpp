@@ -12,10 +12,10 @@ namespace {
 constexpr char kBeside[] = "the tip is beside the range that the cell was prepared for: the force fades";
 constexpr char kTooDeep[] = "the tip is deeper than the cell was prepared for: withdraw it";
 constexpr char kTooFarOut[] = "the tip touched the cell further from its pole than what was prepared";
-constexpr double kTrembling = 0.1e-6;  ///< m, by which a needle at rest may move deeper
-constexpr double kRest = 0.1;          ///< s
-constexpr std::size_t kKept = 16;      ///< cells, for the thread that draws
-constexpr double kUpright = 0.999;     ///< cosine: within 2.5 degrees of the prepared direction
+constexpr double kTremor = 0.1e-6;  ///< m, by which a needle at rest may move deeper
+constexpr double kRest = 0.1;       ///< s
+constexpr std::size_t kKept = 16;   ///< cells, for the thread that draws
+constexpr double kUpright = 0.999;  ///< cosine: within 2.5 degrees of the prepared direction
 
 }  // namespace
 
@@ -74,7 +74,7 @@ TipForce SurrogateCellModel::step(const Eigen::Vector3d& tip, const Eigen::Vecto
 bool SurrogateCellModel::continuesBelow(bool too_deep, double duration) {
   if (!too_deep) {
     deepest_ = rested_ = 0;
-  } else if (contact_->indentation > deepest_ + kTrembling) {
+  } else if (contact_->indentation > deepest_ + kTremor) {
     deepest_ = contact_->indentation;
     rested_ = 0;
   } else {

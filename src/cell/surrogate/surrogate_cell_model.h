@@ -14,14 +14,25 @@
 
 namespace microinjection {
 
-/// The prepared cell under a moving needle: converged force at every step, in microseconds. Beside
-/// the prepared range the force fades, which is reported. The force is invalid for a needle that is
+/// The surrogate cell under a moving needle: converged force at every step, in microseconds. A hand needs a force every
+/// millisecond, whereas a live solution takes 95 ms and is some per cent off (LiveFemCell). So the equilibria are
+/// solved before the session (SurrogatePlan) and fitted, and a step evaluates the fit (SurrogateContact): 0.41 % off
+/// (median, 1.7 % at the worst) at 32 places without training, in 2.8 us (doc/reference/benchmarks.md, A surrogate
+/// cell).
+///
+///     tip --> ChangingContact --> + ForceMemory --> no pull along --> WorkLimit --> force
+///             one cell, or two     Prony terms      the pipette      after a change
+///             while it changes                                       of the cell
+///
+/// Beside the surrogate's range the force fades, which is reported. The force is invalid for a needle that is
 /// not upright, that touches too far from the pole, or that moves deeper below the range, where a
 /// fading force would feel like a puncture; a needle that has rested there may be withdrawn. A
 /// viscoelastic cell's force relaxes, and never pulls along the pipette. A step does not allocate
-/// or lock.
+/// or lock: what the surface depends on is published as a small value (LatestValue), and a cell that was replaced is
+/// freed by the next change(), in the thread that calls it.
 class SurrogateCellModel : public CellModel {
  public:
+  /// `cell`: prepared for this scene, in SI units. @pre SurrogatePlan::check(scene) does not throw
   SurrogateCellModel(const Scene& scene, std::shared_ptr<const SurrogateData> cell);
 
   TipForce step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time) override;

@@ -11,15 +11,31 @@
 
 namespace microinjection {
 
-/// On-line contact of a prepared cell with a moving needle. Stores the contact point; does not
+/// On-line contact of a surrogate cell with a moving needle. Stores the contact point; does not
 /// allocate after its construction. The needle's axis is vertical.
+///
+///     tip --> overlap with the cell at rest --> first touch: contact frame, fit at this contact point
+///      |                                                         |
+///      `------> displacement u in the contact frame <------------'
+///                 |
+///                 +--> limited to the range (LimitedDisplacement) --> energy's gradient, force field
+///                 +--> fade at the end of the contact             --> PassiveCorrection --> force, stiffness
+///
+/// Force field and energy are both needed. The field is several times more exact, because the force of a sticking tip
+/// depends on its path and is no gradient (median error 0.23 % against 1.1 % of the energy alone:
+/// doc/reference/benchmarks.md, A surrogate cell), but a field alone may create energy on a closed path, which the hand
+/// would feel as a cell that pushes by itself. PassiveCorrection adds of the field what the needle has paid for.
+///
+/// A contact ends when the tip is off the cell at rest by 5 % of its displacement, and not at the surface at rest,
+/// because a surface that sticks follows the tip a little beyond its place. From 2 % on the energy falls to zero, so
+/// that the force ends continuously.
 class SurrogateContact {
  public:
   struct Result {
     Eigen::Vector3d force = Eigen::Vector3d::Zero();      ///< N, of the cell on the needle
     Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();  ///< N/m, d(force)/d(tip) = -stiffness
-    bool prepared = true;                                 ///< false: outside of the prepared range; the force fades
-    bool too_deep = false;                                ///< deeper than the prepared range
+    bool prepared = true;                                 ///< false: outside of the surrogate's range; the force fades
+    bool too_deep = false;                                ///< deeper than the surrogate's range
   };
 
   /// All data that the surface depends on.
@@ -30,12 +46,13 @@ class SurrogateContact {
     Eigen::Vector3d displacement = Eigen::Vector3d::Zero();  ///< m, of the tip, in the contact frame
   };
 
+  /// `cell`: prepared for this scene, in its units (SI). Throws ConfigError for a bad radius of the tip.
   SurrogateContact(const Scene& scene, std::shared_ptr<const SurrogateData> cell);
 
   /// `tip` (its lowest point, or the disc's centre): m, relative to the cell's centre.
   Result step(const Eigen::Vector3d& tip);
 
-  /// Removes the contact.
+  /// Removes the contact; the next step may begin a new one, elsewhere.
   void reset();
 
   /// Takes over the contact of another cell, before the first step. It keeps its place: the surface

@@ -45,7 +45,7 @@ Eigen::VectorXd readCoefficients(ByteReader& reader) {
 }
 
 /// Throws std::runtime_error or std::invalid_argument when the data are not of a cell of the plan.
-SurrogateData decode(const Preparation& plan, ByteReader& reader) {
+SurrogateData decode(const SurrogatePlan& plan, ByteReader& reader) {
   SurrogateData cell;
   cell.range = plan.range;
   EnergyScales scales;
@@ -79,30 +79,30 @@ SurrogateData decode(const Preparation& plan, ByteReader& reader) {
 
 }  // namespace
 
-SurrogateData SurrogateData::fit(const Scene& scene, const Preparation& preparation,
+SurrogateData SurrogateData::fit(const Scene& scene, const SurrogatePlan& plan,
                                  const std::vector<TrainingResult>& results) {
   std::vector<double> angles;
-  for (const TrainingRay& ray : preparation.rays) angles.push_back(ray.angle);
+  for (const TrainingRay& ray : plan.rays) angles.push_back(ray.angle);
   std::sort(angles.begin(), angles.end());
   angles.erase(std::unique(angles.begin(), angles.end()), angles.end());
-  const TrainingSet all = TrainingSet::gather(scene, preparation, results);
-  SurrogateData cell = fitted(preparation, all);
+  const TrainingSet all = TrainingSet::gather(scene, plan, results);
+  SurrogateData cell = fitted(plan, all);
   cell.surface = SurfaceShape(cell.range, scene.radius(), angles, all.surfaces);
   return cell;
 }
 
-SurrogateData SurrogateData::fitForces(const Scene& scene, const Preparation& preparation,
+SurrogateData SurrogateData::fitForces(const Scene& scene, const SurrogatePlan& plan,
                                        const std::vector<TrainingResult>& results) {
-  return fitted(preparation, TrainingSet::gather(scene, preparation, results));
+  return fitted(plan, TrainingSet::gather(scene, plan, results));
 }
 
-SurrogateData SurrogateData::fitted(const Preparation& preparation, const TrainingSet& all) {
+SurrogateData SurrogateData::fitted(const SurrogatePlan& plan, const TrainingSet& all) {
   const std::vector<TrainingSample>& samples = all.forces;
   SurrogateData cell;
   cell.range = all.range;
-  cell.energy = EnergyExpansion(preparation.scales, kDegrees);
+  cell.energy = EnergyExpansion(plan.scales, kDegrees);
   fitEnergy(cell.energy, samples);
-  cell.field = ForceField(preparation.scales);
+  cell.field = ForceField(plan.scales);
   cell.field.fit(samples);
   const std::vector<double> errors = forceErrors(samples, [&](double angle, const Eigen::Vector3d& u) {
     ForceField::Local local;
@@ -123,13 +123,13 @@ SurrogateData SurrogateData::fitted(const Preparation& preparation, const Traini
   return cell;
 }
 
-std::string preparedFolder(const Scene& scene, const Preparation& preparation) {
-  const std::string cache = cacheDirectory("prepared");
-  return cache.empty() ? "" : cache + "/" + contentHash(preparation.description(scene));
+std::string surrogateFolder(const Scene& scene, const SurrogatePlan& plan) {
+  const std::string cache = cacheDirectory("surrogates");
+  return cache.empty() ? "" : cache + "/" + contentHash(plan.description(scene));
 }
 
-std::string preparedFile(const Scene& scene, const Preparation& preparation) {
-  const std::string folder = preparedFolder(scene, preparation);
+std::string surrogateFile(const Scene& scene, const SurrogatePlan& plan) {
+  const std::string folder = surrogateFolder(scene, plan);
   return folder.empty() ? "" : folder + "/prepared.cell";
 }
 
@@ -140,7 +140,7 @@ void SurrogateData::changeUnits(double length, double of_energy) {
   surface.changeUnit(length);
 }
 
-void SurrogateData::save(const Scene& scene, const PreparationRange& planned, const std::string& path) const {
+void SurrogateData::save(const Scene& scene, const SurrogateRange& planned, const std::string& path) const {
   const Similarity units = Similarity::of(scene);
   SurrogateData data = *this;
   data.changeUnits(1 / units.length, 1 / units.energy());
@@ -154,13 +154,12 @@ void SurrogateData::save(const Scene& scene, const PreparationRange& planned, co
   writer.array(data.energy.coefficients());
   writer.array(data.field.coefficients());
   data.surface.write(writer);
-  writeCacheFile(path, Preparation::plan(scene, planned).description(scene) + kFit, writer.bytes());
+  writeCacheFile(path, SurrogatePlan::plan(scene, planned).description(scene) + kFit, writer.bytes());
 }
 
-CacheRead<SurrogateData> SurrogateData::load(const Scene& scene, const PreparationRange& range,
-                                             const std::string& path) {
+CacheRead<SurrogateData> SurrogateData::load(const Scene& scene, const SurrogateRange& range, const std::string& path) {
   const Similarity units = Similarity::of(scene);
-  const Preparation plan = Preparation::plan(withoutDimension(scene), range.scaled(1 / units.length));
+  const SurrogatePlan plan = SurrogatePlan::plan(withoutDimension(scene), range.scaled(1 / units.length));
   const CacheRead<std::string> read = readCacheFile(path, plan.description(withoutDimension(scene)) + kFit);
   if (!read) return read.failure<SurrogateData>();
   try {

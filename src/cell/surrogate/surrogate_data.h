@@ -7,8 +7,8 @@
 #include "cell/model/scene.h"
 #include "cell/surrogate/energy_expansion.h"
 #include "cell/surrogate/force_field.h"
-#include "cell/surrogate/preparation.h"
 #include "cell/surrogate/surface_shape.h"
+#include "cell/surrogate/surrogate_plan.h"
 #include "cell/surrogate/training_set.h"
 
 namespace microinjection {
@@ -17,7 +17,7 @@ namespace microinjection {
 /// contact point and the tip's displacement. The energy's gradient is the force except for its
 /// dependence on the path.
 struct SurrogateData {
-  PreparationRange range;
+  SurrogateRange range;
   EnergyExpansion energy;
   ForceField field;
   SurfaceShape surface;
@@ -27,12 +27,11 @@ struct SurrogateData {
   double energy_median_error = 0;  ///< of the energy alone; set by fit(), not stored
   double energy_common_error = 0;
 
-  /// Fits the results of preparation.rays. On the axis it uses forces of the section, elsewhere
+  /// Fits the results of plan.rays. On the axis it uses forces of the section, elsewhere
   /// those of the fine mesh or corrected ones of the coarse mesh. Throws as TrainingSet::gather.
-  static SurrogateData fit(const Scene& scene, const Preparation& preparation,
-                           const std::vector<TrainingResult>& results);
+  static SurrogateData fit(const Scene& scene, const SurrogatePlan& plan, const std::vector<TrainingResult>& results);
   /// Same, without the surface, which the results need not have.
-  static SurrogateData fitForces(const Scene& scene, const Preparation& preparation,
+  static SurrogateData fitForces(const Scene& scene, const SurrogatePlan& plan,
                                  const std::vector<TrainingResult>& results);
 
   /// Changes to a unit of length and one of energy, given in the new ones.
@@ -40,17 +39,17 @@ struct SurrogateData {
 
   /// Stores the data without dimension. `planned`: range of the preparation; `range` is the part
   /// that was reached.
-  void save(const Scene& scene, const PreparationRange& planned, const std::string& path) const;
+  void save(const Scene& scene, const SurrogateRange& planned, const std::string& path) const;
   /// Data of this scene, or of a similar one (see similarity.h), in `path`, prepared for a range. The
   /// state is kDamaged, too, for an invalid size, index or value.
-  static CacheRead<SurrogateData> load(const Scene& scene, const PreparationRange& range, const std::string& path);
+  static CacheRead<SurrogateData> load(const Scene& scene, const SurrogateRange& range, const std::string& path);
 
  private:
-  static SurrogateData fitted(const Preparation& preparation, const TrainingSet& all);
+  static SurrogateData fitted(const SurrogatePlan& plan, const TrainingSet& all);
 };
 
 /// Folder of a scene's data, and the file of the result in it; empty without a cache.
-std::string preparedFolder(const Scene& scene, const Preparation& preparation);
-std::string preparedFile(const Scene& scene, const Preparation& preparation);
+std::string surrogateFolder(const Scene& scene, const SurrogatePlan& plan);
+std::string surrogateFile(const Scene& scene, const SurrogatePlan& plan);
 
 }  // namespace microinjection

@@ -17,7 +17,7 @@ namespace {
 constexpr ElementKind kElement = ElementKind::kP2P0;
 
 Scene at(const Scene& scene, double angle) {
-  Scene result = Preparation::elastic(scene);
+  Scene result = SurrogatePlan::elastic(scene);
   result.needle.offset = ContactFrame::offsetFor(scene, angle);
   return result;
 }

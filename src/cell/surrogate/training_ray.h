@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/cache_file.h"
-#include "cell/surrogate/preparation.h"
+#include "cell/surrogate/surrogate_plan.h"
 
 namespace microinjection {
 

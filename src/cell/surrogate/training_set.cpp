@@ -26,17 +26,17 @@ void addAxis(const Scene& scene, const std::vector<double>& depths, TrainingSet&
 
 }  // namespace
 
-TrainingSet TrainingSet::gather(const Scene& scene, const Preparation& preparation,
+TrainingSet TrainingSet::gather(const Scene& scene, const SurrogatePlan& plan,
                                 const std::vector<TrainingResult>& results) {
-  const std::vector<TrainingRay>& rays = preparation.rays;
-  const auto better = betterForces(preparation.scales, rays, results);
+  const std::vector<TrainingRay>& rays = plan.rays;
+  const auto better = betterForces(plan.scales, rays, results);
   TrainingSet samples;
-  samples.range = reachedRange(preparation, results);
+  samples.range = reachedRange(plan, results);
   samples.range.axis_depth = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (rays[i].level != kCoarseLevel) continue;
     if (straightOnAxis(rays[i])) {
-      addAxis(scene, axisDepths(preparation.range, rays[i]), samples);
+      addAxis(scene, axisDepths(plan.range, rays[i]), samples);
       continue;
     }
     samples.forces.insert(samples.forces.end(), better[i].begin(), better[i].end());
@@ -48,7 +48,7 @@ TrainingSet TrainingSet::gather(const Scene& scene, const Preparation& preparati
   return samples;
 }
 
-std::vector<double> axisDepths(const PreparationRange& range, const TrainingRay& straight) {
+std::vector<double> axisDepths(const SurrogateRange& range, const TrainingRay& straight) {
   std::vector<double> depths;
   for (int i = 0; i < straight.points; ++i) depths.push_back(-straight.at(i).z());
   for (int i = 1; i <= kDeepSamples; ++i) {
@@ -57,17 +57,17 @@ std::vector<double> axisDepths(const PreparationRange& range, const TrainingRay&
   return depths;
 }
 
-PreparationRange reachedRange(const Preparation& preparation, const std::vector<TrainingResult>& results) {
+SurrogateRange reachedRange(const SurrogatePlan& plan, const std::vector<TrainingResult>& results) {
   double share = 1;
   for (std::size_t i = 0; i < results.size(); ++i) {
     // The coarse mesh continues where the fine one has no solution.
-    if (preparation.rays[i].level != kCoarseLevel || results[i].reason.empty()) continue;
+    if (plan.rays[i].level != kCoarseLevel || results[i].reason.empty()) continue;
     const double reached = results[i].samples.empty() ? 0 : results[i].samples.back().displacement.norm();
-    share = std::min(share, reached / preparation.rays[i].target.norm());
+    share = std::min(share, reached / plan.rays[i].target.norm());
   }
   if (share < kLeastShare)
     throw std::runtime_error("a path ends before a fifth of its length (see above): not prepared");
-  PreparationRange range = preparation.range;
+  SurrogateRange range = plan.range;
   range.depth *= share;
   range.lateral *= share;
   return range;

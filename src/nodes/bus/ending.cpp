@@ -23,8 +23,7 @@ void onShutdownCall(XmlRpc::XmlRpcValue&, XmlRpc::XmlRpcValue& result) {
 }  // namespace
 
 void endInGoodOrder() {
-  std::signal(SIGINT, onSignal);
-  std::signal(SIGTERM, onSignal);
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) std::signal(number, onSignal);
   // ROS does not replace a name that is bound before it starts.
   ros::XMLRPCManager::instance()->bind("shutdown", onShutdownCall);
 }

@@ -14,8 +14,30 @@ namespace microinjection {
 class LocalPublisher;
 class LocalSubscription;
 
-/// The bus of a node among others of its process; see LocalNetwork. Whoever runs the session
-/// (Executive) asks when the node is due, and has it step and serve what has arrived.
+/// The bus of one node among others of its process, which a LocalNetwork joins. It has neither a thread nor a clock
+/// of its own: whoever runs the session (Executive) asks when the node is due, sets the network's time, and has the
+/// node do what is due then.
+///
+///     others publish --> LocalNetwork --> receive(): waiting_, a queue in the order of arrival
+///                                             |
+///     Executive: due() --> time --> run():    v
+///         timers that are due, then   with steps:      serve() --> handlers, then the step
+///                                     without steps:   serve() --> handlers
+///
+/// A publisher could call its subscribers' handlers directly. Handlers would then run within each other's steps, to
+/// any depth, and see half of what the publisher is about to do. With a queue, a handler runs only when its own node
+/// has its turn, so that the order of all that happens follows from the session and not from the stack. What a node
+/// sends to itself waits for its next turn, for the same reason.
+///
+/// A node steps as on a RosBus: when a kDrives message has come, else after its period; and 1.5 periods after a
+/// driven step if the next message is late by half a period. It steps once in an instant at the most, and after a
+/// delay it does not catch up, which a RosBus does for up to ten periods. A node without steps serves messages in the
+/// instant in which they arrive.
+///
+/// The functions from due() on are the Executive's, some of them for faults on purpose: a process that is killed,
+/// stopped or late, and a lost master.
+///
+/// @pre The LocalNetwork outlives the bus, and the bus its node.
 class LocalBus : public Bus {
  public:
   ~LocalBus() override;
@@ -36,25 +58,28 @@ class LocalBus : public Bus {
   void stop() override { stopped_ = true; }
   bool isRunning() const override { return !stopped_; }
   void setBusy(bool) override {}
+  /// Handles what waits, once: nobody else can publish while this node has its turn.
   bool waitUntil(const std::function<bool()>& done, double timeout) override;
   void pause(double) override {}
 
-  /// The time at which the node steps or a timer of it is due, or `now` when something waits for it.
+  /// The time of the node's next step or timer, or now() when a message waits that starts its turn; ros::TIME_MAX:
+  /// nothing is due, as of a node that has stopped, is frozen or is cut off.
   ros::Time due() const;
-  /// Serves what has arrived, runs the timers that are due, and steps if that is due. @returns whether
-  /// there was anything to do. Exceptions are the node's.
+  /// The node's turn: runs the timers that are due, and steps or serves what has arrived. @returns whether there was
+  /// anything to do. Throws what the node throws.
   bool run();
-  /// Runs the task of onEnd().
+  /// Ends the node in good order: runs the task of onEnd(), once. Throws what the task throws.
   void end();
   /// Cuts the node off as if its process had been killed: nothing that it does is heard any more.
   void disconnect() { connected_ = false; }
-  /// As if its process were stopped: it neither steps nor answers, and what arrives waits.
+  /// As if its process were stopped: the node neither steps nor answers calls, and what arrives waits in its queues.
   void setFrozen(bool frozen) { frozen_ = frozen; }
-  void setLost(bool lost) { lost_ = lost; }
-  /// The node does not step before this time, as if the machine had delayed it.
+  void setLost(bool lost) { lost_ = lost; }  ///< see isLost()
+  /// The node gets no turn before this time, as if the machine had delayed it.
   void holdUntil(const ros::Time& time) { held_until_ = time; }
 
-  /// Resolved topics that it publishes, and those whose messages start its steps.
+  /// Resolved topics that the node publishes, and those whose messages start its steps: the Executive orders nodes by
+  /// them.
   std::vector<std::string> published() const;
   std::vector<std::string> driving() const;
 
@@ -71,6 +96,7 @@ class LocalBus : public Bus {
   friend class LocalNetwork;
   friend class LocalPublisher;
   friend class LocalSubscription;
+  /// A message that the node has not handled yet. One whose subscription has ended meanwhile is dropped.
   struct Waiting {
     std::weak_ptr<LocalSubscription> subscription;
     RawDelivery delivery;
@@ -81,11 +107,14 @@ class LocalBus : public Bus {
     std::function<void()> task;
   };
 
+  /// For LocalNetwork::connect(). `parameters`: the node's own, which are copied; `remaps`: from and to resolved
+  /// names.
   LocalBus(LocalNetwork& network, std::string name, const YAML::Node& parameters,
            const std::map<std::string, std::string>& remaps);
+  /// Queues a message. A full subscription drops its oldest one.
   void receive(const std::shared_ptr<LocalSubscription>& subscription, const RawDelivery& delivery);
-  bool serve();
-  bool runTimers();
+  bool serve();      ///< handles what waits now; what its handlers send to their own node waits on
+  bool runTimers();  ///< those that are due; one that is late is called once
   bool stepIfDue();
 
   LocalNetwork& network_;
@@ -93,13 +122,14 @@ class LocalBus : public Bus {
   YAML::Node parameters_;
   std::map<std::string, std::string> remaps_;
   std::deque<Waiting> waiting_;
-  std::vector<std::weak_ptr<Timer>> timers_;
-  ros::Duration period_;  ///< zero: the node has no steps
+  std::vector<std::weak_ptr<Timer>> timers_;  ///< the node holds each by its BusHandle
+  ros::Duration period_;                      ///< zero: the node has no steps
   std::function<void(const ros::Time&)> step_;
   std::function<void()> end_;
+  /// Of the next step if no message starts one; before which there is no turn; of the last step.
   ros::Time deadline_, held_until_, stepped_;
-  unsigned driving_ = 0;  ///< subscriptions that start steps
-  bool triggered_ = false;
+  unsigned driving_ = 0;    ///< subscriptions that start steps
+  bool triggered_ = false;  ///< a message has come that starts a step
   bool connected_ = true, frozen_ = false, stopped_ = false, lost_ = false;
 };
 

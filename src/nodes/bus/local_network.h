@@ -15,28 +15,43 @@ namespace microinjection {
 class LocalBus;
 struct LocalTopic;
 
-/// What happens to a message on its way, for tests: see LocalNetwork::alter().
+/// A message on its way, for tests that lose or damage it: see LocalNetwork::alter().
 struct Passage {
-  std::string sender;
+  std::string sender;  ///< node
   boost::shared_ptr<const void> message;
-  double delay = 0;  ///< s until it arrives
+  double delay = 0;  ///< s until it arrives, >= 0
 };
 /// The passages that leave where one was: none for a loss, two for a repetition, another message for damage.
 using Alteration = std::function<std::vector<Passage>(const Passage&)>;
 
-/// The topics, services, parameters and the virtual clock that the nodes of one process share: what the
-/// ROS master and the network are for nodes on a RosBus. It keeps what a node could notice there:
+/// The topics, services, parameters and the virtual clock that the nodes of one process share: what the ROS master
+/// and the network are for nodes on a RosBus. A message reaches all queues within publish(), unless a test has
+/// altered its topic:
 ///
-/// - a subscription gets messages from its connection on, and first the last message of each publisher
-///   that latches;
+///     publish() --> unaltered: LocalBus::receive() of each subscription, at once
+///         |
+///         '-------> Alteration --> 0, 1, 2, ... passages --> flights_, by time of arrival
+///                                                               |
+///                                  nextArrival(), deliverDue() -+--> receive() of each subscription
+///
+/// A network that merely called functions would be simpler, and nodes would come to rely on what no real one gives:
+/// an order of start that suits them, messages that are never lost, an object that both ends share. So this one keeps
+/// what a node could notice on a RosBus, and test/nodes/bus/bus_contract.h holds both to it:
+///
+/// - a subscription gets messages from its connection on, and first the last message of each publisher that latches;
 /// - a queue that is full drops its oldest message;
-/// - a message is a copy, which its sender cannot change any more, with the sender's sequence number;
+/// - a message is a copy, which its sender cannot change any more, with the sender's sequence number (one that is
+///   published shared is no copy, and has the number that its sender wrote);
 /// - a topic has any number of publishers and subscribers, of one type: others are reported and do not connect;
 /// - a node that is gone has no ends of topics and services any more.
 ///
-/// The time is also that of ros::Time::now(), for libraries that read it. One thread.
+/// The time is also that of ros::Time::now(), because libraries such as actionlib read that. There is one such time
+/// in a process, which therefore has one network at a time. All functions are for one thread.
+///
+/// @pre A network outlives its buses.
 class LocalNetwork {
  public:
+  /// `start`: above 0, which stands for a simulated clock that has not started.
   explicit LocalNetwork(const ros::Time& start);
   ~LocalNetwork();
   LocalNetwork(const LocalNetwork&) = delete;
@@ -44,14 +59,17 @@ class LocalNetwork {
   ros::Time now() const { return now_; }
   void setTime(const ros::Time& now);
 
-  /// `parameters`: the node's own; `remaps`: by resolved names.
+  /// `node`: its full name, such as /vision. `parameters`: the node's own, a map; `remaps`: from and to resolved
+  /// names.
   std::unique_ptr<LocalBus> connect(const std::string& node, const YAML::Node& parameters,
                                     const std::map<std::string, std::string>& remaps = {});
   /// Sets a parameter of the whole session, such as /robot_description.
   void setParameter(const std::string& name, const YAML::Node& value) { parameters_[name] = value; }
-  YAML::Node parameter(const std::string& name) const;
+  YAML::Node parameter(const std::string& name) const;  ///< a copy; null: there is none
 
-  /// From now on `alteration` decides what becomes of each message of a topic; empty: nothing does.
+  /// From now on `alteration` decides what becomes of each message of a topic (resolved name); empty: each arrives as
+  /// it is. The last message of a latching publisher, which a later subscriber gets, is not altered.
+  /// @throws std::invalid_argument when nobody has published or subscribed the topic yet
   void alter(const std::string& topic, Alteration alteration);
 
   /// The time at which the first delayed message arrives; empty: there is none.
@@ -59,7 +77,7 @@ class LocalNetwork {
   /// Has the delayed messages arrive whose time has come.
   void deliverDue();
 
-  /// Counts the ends of topics that have come and gone.
+  /// Counts the ends of topics that have come and gone: the Executive sorts its nodes anew when this number changes.
   std::uint64_t changes() const { return changes_; }
 
  private:
@@ -71,6 +89,7 @@ class LocalNetwork {
     LocalBus* owner;
     RawAnswer answer;
   };
+  /// A passage that has not arrived yet.
   struct Flight {
     LocalTopic* topic;
     Passage passage;

@@ -64,23 +64,24 @@ void DimpleReader::follow(const ros::Time& stamp, const Eigen::Vector3d& tip, bo
 void DimpleReader::onState(const cell_microinjection::VisionState& message) {
   const std::optional<Depth> depth = depthIn(message);
   if (!depth || !(message.pixel_size > 0)) return;
-  const Sight sight{message.header.stamp, message.pixel_size * depth->value, message.pixel_size * depth->deviation};
-  if (places_.empty() || places_.back().stamp < sight.exposed) {
-    waiting_ = sight;
+  const Observation observation{message.header.stamp, message.pixel_size * depth->value,
+                                message.pixel_size * depth->deviation};
+  if (places_.empty() || places_.back().stamp < observation.exposed) {
+    waiting_ = observation;
   } else {
-    add(sight);
+    add(observation);
   }
 }
 
-void DimpleReader::add(const Sight& sight) {
+void DimpleReader::add(const Observation& observation) {
   const auto after =
-      std::find_if(places_.begin(), places_.end(), [&](const Place& p) { return p.stamp >= sight.exposed; });
+      std::find_if(places_.begin(), places_.end(), [&](const Place& p) { return p.stamp >= observation.exposed; });
   if (after == places_.begin() || after == places_.end()) return;
   const Place &next = *after, &last = *(after - 1);
   const double step = secondsBetween(last.stamp, next.stamp);
   if (step > kFarthest || !next.learns || !last.learns || (next.tip - last.tip).norm() > kFastest * step) return;
-  const double share = secondsBetween(last.stamp, sight.exposed) / step;
-  contact_.add(last.tip + share * (next.tip - last.tip), sight.depth, sight.deviation);
+  const double share = secondsBetween(last.stamp, observation.exposed) / step;
+  contact_.add(last.tip + share * (next.tip - last.tip), observation.depth, observation.deviation);
 }
 
 }  // namespace microinjection

@@ -31,17 +31,17 @@ class DimpleReader {
     Eigen::Vector3d tip;  ///< m
     bool learns;
   };
-  struct Sight {
+  struct Observation {
     ros::Time exposed;
     double depth, deviation;  ///< m, of the tip below the undisturbed outline; negative above it
   };
   void onState(const cell_microinjection::VisionState& message);
-  void add(const Sight& sight);
+  void add(const Observation& observation);
 
   ImageContactConfig config_;
   ImageContact contact_;
   boost::circular_buffer<Place> places_;
-  std::optional<Sight> waiting_;  ///< of an image that came before a later place of the needle was known
+  std::optional<Observation> waiting_;  ///< of an image that came before a later place of the needle was known
   Subscription states_;
 };
 

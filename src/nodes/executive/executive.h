@@ -10,7 +10,8 @@
 
 namespace microinjection {
 
-/// Makes a node on a bus; its destructor ends the node.
+/// Makes a node on a bus, which outlives it. The destructor of what it returns ends the node; nobody else may hold
+/// it.
 using NodeFactory = std::function<std::shared_ptr<void>(Bus&)>;
 
 /// A factory of a node class.
@@ -19,16 +20,26 @@ NodeFactory makeNode() {
   return [](Bus& bus) { return std::make_shared<Node>(bus); };
 }
 
-/// The nodes of a session in one thread, on virtual time: the same messages in every run.
+/// The nodes of a session in one thread, on virtual time: the same messages in every run, as fast as one core allows.
+/// Tests, training runs and searches over many cells run sessions in this way.
 ///
-/// Time goes from one instant at which something is due to the next. At each instant the nodes that are
-/// due step in the order of the data flow: a node after those that publish its kDrives inputs, others in
-/// the order in which they were added. What a node publishes arrives at once: downstream in the same
-/// instant, and upstream, as feedback, at the next step. Nodes without steps serve a message in the
-/// instant of its arrival.
+///     instant 1    hand --> bridge --> controller --> micromanipulator --> cell --> sensor
+///                                                                                      |
+///     instant 2    hand --> bridge ...  <---------- force: feedback -------------------'
 ///
-/// A node that throws ends, as its process would; failures() tells. Tests freeze, delay, kill and restart
-/// nodes, and alter messages (network().alter()).
+/// Time goes from one instant at which something is due to the next one. A common tick would be simpler; but each
+/// node has its own rate, and the microscope at 30 Hz and the controller at 1 kHz have none in common. Within an
+/// instant the nodes that are due have their turns in the order of the data flow: a node after those that publish its
+/// kDrives inputs, others in the order in which they were added. What a node publishes arrives at once: downstream in
+/// the same instant and upstream, as feedback, at the next step. A thread for each node would be nearer to a live
+/// session, but its order is that of the machine, and no two runs would be alike.
+///
+/// Nodes without steps serve a message in the instant of its arrival, in further passes over all nodes, until none
+/// has anything to do. doc/design/bus_and_executive.md has the table of inputs and the limits of virtual time.
+///
+/// A node that throws ends alone, as its process would; failures() has what it threw. Tests freeze, delay, kill and
+/// restart nodes, and alter messages (network().alter()). Functions that name a node throw std::invalid_argument when
+/// there is none of that name, or when it has ended and the function needs a living one.
 class Executive {
  public:
   /// Virtual time begins at `start` (s). A simulated clock at 0 has not started.
@@ -39,14 +50,16 @@ class Executive {
   LocalNetwork& network() { return network_; }
   double time() const;  ///< s since the start
 
-  /// Constructs a node. @throws ConfigError naming the node that failed, std::invalid_argument when there
-  /// is one of this name
+  /// Constructs a node. `name`: without '/'; `parameters`: its private ones; `remaps`: from and to resolved names.
+  /// @throws ConfigError naming the node when its constructor throws, std::invalid_argument when there is one of this
+  ///   name
   void add(const std::string& name, NodeFactory factory, const YAML::Node& parameters = YAML::Node(YAML::NodeType::Map),
            const std::map<std::string, std::string>& remaps = {});
 
-  /// @throws ConfigError when nodes drive each other in a circle, or answer each other without end
+  /// Runs for this long (s). @throws ConfigError when nodes drive each other in a circle, or answer each other
+  /// without end within an instant
   void runFor(double seconds);
-  /// Runs until `done`, at the most for `limit` (s). @returns done()
+  /// Runs until `done`, which is asked between instants, at the most for `limit` (s). @returns done()
   bool runUntil(const std::function<bool()>& done, double limit);
 
   void freeze(const std::string& name);   ///< as SIGSTOP: it neither steps nor serves, messages wait
@@ -63,7 +76,7 @@ class Executive {
   bool runs(const std::string& name) const;
   /// What nodes that have ended by themselves threw, by name.
   const std::map<std::string, std::string>& failures() const { return failures_; }
-  LocalBus& bus(const std::string& name);
+  LocalBus& bus(const std::string& name);  ///< of a node that has not ended
 
  private:
   struct Member {

@@ -21,11 +21,11 @@
 #include "nodes/microscope_node.h"
 #include "nodes/needle/rig_frames_node.h"
 #include "nodes/notebook_node.h"
-#include "nodes/operator_node.h"
 #include "nodes/readiness_node.h"
 #include "nodes/session_recorder_node.h"
 #include "nodes/teleoperation_follower_node.h"
 #include "nodes/touch_node.h"
+#include "nodes/virtual_hand_node.h"
 #include "nodes/vision_node.h"
 #include "nodes/visual_servo_node.h"
 
@@ -50,7 +50,7 @@ NodeFactory nodeFactory(const std::string& program) {
       {"micromanipulator", makeNode<MicromanipulatorNode>()},
       {"microscope", makeNode<MicroscopeNode>()},
       {"notebook", makeNode<NotebookNode>()},
-      {"operator", makeNode<OperatorNode>()},
+      {"virtual_hand", makeNode<VirtualHandNode>()},
       {"readiness", makeNode<ReadinessNode>()},
       {"rig_frames", makeNode<RigFramesNode>()},
       {"session_recorder", makeNode<SessionRecorderNode>()},

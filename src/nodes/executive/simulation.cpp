@@ -20,7 +20,7 @@ class SessionWatch {
  public:
   explicit SessionWatch(Bus& bus) {
     phase_ = bus.subscribe<cell_microinjection::StringStamped>(
-        "operator/phase", 10, [this](const auto& delivery) { hand_done_ = delivery.message->string == "done"; });
+        "virtual_hand/phase", 10, [this](const auto& delivery) { hand_done_ = delivery.message->string == "done"; });
     injection_ = bus.subscribe<cell_microinjection::InjectionStatus>(
         "controller/injection_state", 10, [this](const auto& delivery) { status_ = *delivery.message; });
     cell_ = bus.subscribe<cell_microinjection::CellContact>("cell/contact", 1, [this](const auto& delivery) {
@@ -54,8 +54,8 @@ void requireSimulable(const Session& session) {
     refuse("sensor/source", session.sensor.source, "simulated or none");
   if (session.injector != "simulated" && session.injector != "none" && !emulated(session.injector))
     refuse("injector", session.injector, "simulated, emulated_NAME or none");
-  if (session.hand.present() && !session.hand.isOperator())
-    refuse("hand/device", session.hand.device, "operator or none");
+  if (session.hand.present() && !session.hand.isVirtual())
+    refuse("hand/device", session.hand.device, "virtual_hand or none");
   if (session.hand.wait_for_go) refuse("hand/wait_for_go", "true", "false");
   if (session.injection.mode == "semi_automatic") refuse("injection/mode", "semi_automatic", "manual or automatic");
   if (session.camera.source == "device" || session.camera.source == "topic")

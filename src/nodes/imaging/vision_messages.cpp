@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "vision/detection/zona_thickness.h"
+#include "vision/layers/zona_thickness.h"
 
 namespace microinjection {
 namespace {

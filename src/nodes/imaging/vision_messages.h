@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "vision/detection/specimen_tracker.h"
+#include "vision/track/specimen_tracker.h"
 
 namespace microinjection {
 

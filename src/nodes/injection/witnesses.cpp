@@ -10,8 +10,9 @@
 namespace microinjection {
 namespace {
 
-constexpr double kSettles = 8e-3;      ///< s after the news of a changed cell, within which its force arrives
-constexpr double kSmallFall = 0.9;     ///< of the modulus: a smaller fall is no puncture; a twin changes it every 30 ms
+constexpr double kSettles = 8e-3;  ///< s after the news of a changed cell, within which its force arrives
+constexpr double kSmallFall =
+    0.9;  ///< of the modulus: a smaller fall is no puncture; an estimator changes it every 30 ms
 constexpr double kCellTimeout = 0.1;   ///< s, of /cell/contact
 constexpr double kImageTimeout = 0.5;  ///< s, of /vision/state
 

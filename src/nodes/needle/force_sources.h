@@ -9,12 +9,12 @@
 #include <optional>
 #include <string>
 
+#include "hardware/sensor/force_sensor.h"
+#include "hardware/sensor/overload_latch.h"
+#include "hardware/sensor/serial_force_sensor.h"
+#include "hardware/serial/serial_port.h"
 #include "nodes/runtime/cycle.h"
 #include "nodes/runtime/frames.h"
-#include "rig/sensor/force_sensor.h"
-#include "rig/sensor/overload_latch.h"
-#include "rig/sensor/serial_force_sensor.h"
-#include "rig/serial/serial_port.h"
 
 namespace microinjection {
 

@@ -19,7 +19,7 @@ bool stopsNeedle(const std::string& command) {
 
 }  // namespace
 
-NeedleCommands::NeedleCommands(Cycle& cycle, const MicromanipulatorConfig& config, RigDevice& rig,
+NeedleCommands::NeedleCommands(Cycle& cycle, const MicromanipulatorConfig& config, ManipulatorSetup& rig,
                                Micromanipulator& model, bool allow_network)
     : cycle_(cycle),
       config_(config),

@@ -10,14 +10,14 @@
 
 #include "base/busy_report.h"
 #include "cell_microinjection/StringStamped.h"
-#include "nodes/needle/rig_device.h"
+#include "hardware/manipulator/command_authority.h"
+#include "hardware/manipulator/micromanipulator.h"
+#include "hardware/manipulator/needle_state.h"
+#include "nodes/needle/manipulator_setup.h"
 #include "nodes/runtime/command_log.h"
 #include "nodes/runtime/command_source.h"
 #include "nodes/runtime/cycle.h"
 #include "nodes/runtime/network_monitor.h"
-#include "rig/manipulator/command_authority.h"
-#include "rig/manipulator/micromanipulator.h"
-#include "rig/manipulator/needle_state.h"
 
 namespace microinjection {
 
@@ -27,7 +27,7 @@ class NeedleCommands {
  public:
   /// All references outlive this.
   /// @param allow_network  false: a real rig is not enabled while others can reach this machine
-  NeedleCommands(Cycle& cycle, const MicromanipulatorConfig& config, RigDevice& rig, Micromanipulator& model,
+  NeedleCommands(Cycle& cycle, const MicromanipulatorConfig& config, ManipulatorSetup& rig, Micromanipulator& model,
                  bool allow_network);
 
   /// Call before the model's step: checks device, senders and network, and executes the newest
@@ -70,7 +70,7 @@ class NeedleCommands {
 
   Cycle& cycle_;
   const MicromanipulatorConfig& config_;
-  RigDevice& rig_;
+  ManipulatorSetup& rig_;
   Micromanipulator& model_;
   Input<geometry_msgs::PoseStamped>& servo_;
   Output<sensor_msgs::TimeReference>& trace_;

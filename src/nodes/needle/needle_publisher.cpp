@@ -17,7 +17,7 @@ void publishPose(Output<geometry_msgs::PoseStamped>& output, const std::optional
 
 }  // namespace
 
-NeedlePublisher::NeedlePublisher(Cycle& cycle, const ManipulatorGeometry& geometry, const RigDevice& rig,
+NeedlePublisher::NeedlePublisher(Cycle& cycle, const ManipulatorGeometry& geometry, const ManipulatorSetup& rig,
                                  const Micromanipulator& model, double joint_states_rate)
     : geometry_(geometry),
       rig_(rig),

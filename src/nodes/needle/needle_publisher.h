@@ -6,9 +6,9 @@
 
 #include "cell_microinjection/ManipulatorAbilities.h"
 #include "cell_microinjection/OperatingState.h"
-#include "nodes/needle/rig_device.h"
+#include "hardware/manipulator/micromanipulator.h"
+#include "nodes/needle/manipulator_setup.h"
 #include "nodes/runtime/cycle.h"
-#include "rig/manipulator/micromanipulator.h"
 
 namespace microinjection {
 
@@ -17,7 +17,7 @@ namespace microinjection {
 class NeedlePublisher {
  public:
   /// All references outlive this. @param joint_states_rate  Hz
-  NeedlePublisher(Cycle& cycle, const ManipulatorGeometry& geometry, const RigDevice& rig,
+  NeedlePublisher(Cycle& cycle, const ManipulatorGeometry& geometry, const ManipulatorSetup& rig,
                   const Micromanipulator& model, double joint_states_rate);
 
   /// Call after the model's step.
@@ -33,7 +33,7 @@ class NeedlePublisher {
   void publishJointStates(const ros::Time& now);
 
   const ManipulatorGeometry& geometry_;
-  const RigDevice& rig_;
+  const ManipulatorSetup& rig_;
   const Micromanipulator& model_;
   double joint_states_period_;  ///< s
   Output<geometry_msgs::PoseStamped>& measured_;

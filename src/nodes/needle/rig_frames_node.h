@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "hardware/manipulator/rig_model.h"
 #include "nodes/bus/bus.h"
-#include "rig/manipulator/rig_model.h"
 
 namespace microinjection {
 

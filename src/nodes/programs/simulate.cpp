@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/command_line.h"
 #include "base/errors.h"
 #include "base/exit_status.h"
 #include "base/standard_output.h"
@@ -54,18 +55,7 @@ std::optional<Arguments> parse(int argc, char** argv) {
   add("limit", po::value(&arguments.config.limit)->value_name("S"), "s in which it must be done (600)");
   add("quiet,q", po::bool_switch(&arguments.quiet), "no progress");
   po::variables_map given;
-  try {
-    po::positional_options_description first;
-    po::store(po::command_line_parser(own).options(options).positional(first.add("session", 1)).run(), given);
-    po::notify(given);
-  } catch (const po::error& error) {
-    throw ConfigError(error.what());
-  }
-  if (given.count("help")) {
-    std::cout << kHelp << '\n' << options;
-    flushStandardOutput();
-    return std::nullopt;
-  }
+  if (!readCommandLine(own, options, std::string(kHelp) + '\n', given, "session")) return std::nullopt;
   if (given.count("record")) arguments.overrides.push_back("record.folder:=" + given["record"].as<std::string>());
   for (const double seconds : {arguments.config.duration, arguments.config.limit}) {
     if (!(seconds >= 0)) throw ConfigError("--duration, --limit: must be at least 0 s");
@@ -92,11 +82,8 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
+  return runProgram("simulate", [&] {
     const std::optional<Arguments> arguments = parse(argc, argv);
     return arguments ? run(*arguments) : kDone;
-  } catch (const std::exception& error) {
-    std::cerr << "simulate: " << error.what() << std::endl;
-    return kBadUsage;
-  }
+  });
 }

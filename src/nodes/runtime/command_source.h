@@ -53,7 +53,7 @@ Subscription subscribeCommand(Bus& bus, const std::string& topic, Handler handle
   const auto receive = [&bus, topic, handler, rule](const Delivery<Message>& delivery) {
     runGuarded(bus.refusals(), topic, [&] {
       const Message& message = *delivery.message;
-      if (rule == StampRule::kTimely && !isTimely(bus.refusals(), topic, message, bus.now())) return;
+      if (rule != StampRule::kAny && !isTimely(bus.refusals(), topic, message, bus.now())) return;
       handler(message, CommandSource{delivery.raw.sender, message.header.stamp.isZero(), delivery.raw.latched,
                                      message.header.seq, delivery.raw.connection});
     });

@@ -16,11 +16,33 @@
 
 namespace microinjection {
 
-/// The `main` of a node: starts ROS, constructs Node(bus) on a RosBus and runs the bus until shutdown. A
-/// node with wrong parameters does not start: exceptions of its constructor are logged and the exit
-/// status is 1. `priority` applies where the system allows it. With ShutdownMode::kInGoodOrder the first
-/// signal only requests the end (ending.h).
+/// What the first SIGINT, SIGTERM or `rosnode kill` does to a node. With kInGoodOrder it only requests the end, so
+/// that the node can still publish: zero force for a haptic driver that would go on rendering the last one. A second
+/// one ends the node at once (nodes/bus/ending.h).
 enum class ShutdownMode { kAtOnce, kInGoodOrder };
+
+/// The `main` of a live node: starts ROS, constructs Node(bus) on a RosBus, and runs the bus until shutdown.
+///
+///     --help? | ConsoleRelay | ros::init, signals | namesake? | /use_sim_time? | priority | Node(bus) | bus.run()
+///        0                                              1              1                        1           1
+///
+/// The second line has the exit status of what ends the program there. The programs of all nodes share this one
+/// function, because the order matters and each step is easily forgotten in one of them:
+///
+/// - The output goes through a ConsoleRelay, because a terminal that is stopped (Ctrl-S, a hung ssh) would stop the
+///   loop in its next write.
+/// - SIGTERM and SIGHUP end a node as SIGINT does, because roscpp handles only SIGINT and a device must be stopped
+///   first.
+/// - A node does not start beside a living namesake. ROS would end the older one, and with a second session on one
+///   master that is the node that moves a needle.
+/// - A node does not start with /use_sim_time, because it would stand still until somebody publishes /clock.
+/// - A node with wrong parameters does not start: what its constructor throws is logged, and the exit status is 1. An
+///   exception that leaves the bus ends the node in the same way.
+///
+/// @param name  of the program: the node's name, unless remapped, and that of its file in config/ for --help
+/// @param priority  applies where the system allows it (real_time.h)
+/// @tparam Node  has a constructor of a Bus and the text kHelp
+/// @returns the exit status
 template <typename Node>
 int runNode(int argc, char** argv, const std::string& name, Priority priority = Priority::kRealTime,
             ShutdownMode ending = ShutdownMode::kAtOnce) {

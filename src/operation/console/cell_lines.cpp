@@ -5,7 +5,7 @@
 namespace microinjection {
 
 Lamp estimateLamp(const std::optional<CellEstimateView>& estimate) {
-  if (!estimate) return {Light::kGrey, "no estimate (twin:=true)"};
+  if (!estimate) return {Light::kGrey, "no estimate (estimator:=true)"};
   const std::string interval = figure(estimate->modulus, 1e3, 2) + " kPa (" + figure(estimate->low, 1e3, 2) + " to " +
                                figure(estimate->high, 1e3, 2) + "), ";
   const std::string reason = estimate->reason.empty() ? "" : ": " + estimate->reason;

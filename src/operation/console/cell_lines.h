@@ -7,7 +7,7 @@
 
 namespace microinjection {
 
-/// What the twin says of the cell; moduli in Pa, depths in m, forces in N.
+/// What the estimator says of the cell; moduli in Pa, depths in m, forces in N.
 struct CellEstimateView {
   std::string verdict;  ///< prior, learning, converged or inconsistent
   std::string reason;   ///< why it is not converged

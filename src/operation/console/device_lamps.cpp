@@ -16,7 +16,7 @@ struct Owner {
 constexpr Owner kOwners[] = {
     {"micromanipulator", Device::kRig}, {"camera", Device::kCamera},      {"microscope", Device::kCamera},
     {"force_sensor", Device::kSensor},  {"haptic_device", Device::kHand}, {"keyboard_hand", Device::kHand},
-    {"operator", Device::kHand},        {"haptic_bridge", Device::kHand}, {"cell_simulator", Device::kCell}};
+    {"virtual_hand", Device::kHand},    {"haptic_bridge", Device::kHand}, {"cell_simulator", Device::kCell}};
 
 std::optional<Device> ownerOf(const std::string& name) {
   const std::string node = name.substr(0, name.find(':'));

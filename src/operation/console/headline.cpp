@@ -38,9 +38,7 @@ std::string enabledText(const SessionView& session) {
   return session.hold_reason.empty() ? "follows the hand" : session.hold_reason;
 }
 
-}  // namespace
-
-Lamp headline(const SessionView& session) {
+Lamp ofController(const SessionView& session) {
   if (!session.connected()) return {Light::kRed, "No message of injection_controller"};
   const std::string state = std::string(toText(*session.operating)) + ": ";
   switch (*session.operating) {
@@ -59,6 +57,19 @@ Lamp headline(const SessionView& session) {
   if (!session.notice.empty()) return {Light::kYellow, state + session.notice};
   if (heldByAlarm(session)) return {Light::kYellow, state + "held: " + session.hold_reason};
   return {Light::kGreen, state + enabledText(session)};
+}
+
+}  // namespace
+
+Lamp headline(const SessionView& session) {
+  Lamp lamp = ofController(session);
+  if (lamp.light == Light::kGreen || !session.hindrance) return lamp;
+  const HindranceView& first = *session.hindrance;
+  // The controller may hold the needle for that reason, and has said so.
+  if (lamp.text.find(first.reason) == std::string::npos) lamp.text += "; " + first.node + ": " + first.reason;
+  if (!first.remedy.empty()) lamp.text += " - " + first.remedy;
+  if (lamp.light == Light::kGrey && first.is_error) lamp.light = Light::kYellow;
+  return lamp;
 }
 
 }  // namespace microinjection

@@ -8,9 +8,6 @@
 
 namespace microinjection {
 
-/// The state of that text of an operating_state; empty when there is none.
-std::optional<OperatingState> operatingStateOf(const std::string& text);
-
 /// What the console knows of the injection controller's parameters. Its defaults refuse nothing that
 /// the controller may allow.
 struct ControllerSettings {
@@ -21,6 +18,13 @@ struct ControllerSettings {
   std::string error;                  ///< values that are no numbers; empty: none
 };
 
+/// What is to be mended first before the session does what it is asked to, see Hindrance.msg.
+struct HindranceView {
+  std::string node, reason;
+  std::string remedy;     ///< empty: not known
+  bool is_error = false;  ///< else a warning
+};
+
 /// What the console knows of the injection controller from its messages. An empty state: no message
 /// came, or none for too long.
 struct SessionView {
@@ -28,14 +32,15 @@ struct SessionView {
   std::optional<InjectionState> injection;
   bool listens = true;  ///< the controller receives what the console sends
   bool homed = true;
-  bool busy = false;        ///< the controller moves the needle by itself
-  bool waits = false;       ///< for the operator's command
-  double force = 0;         ///< N, along the pipette, above the offset at rest
-  double guard_force = 0;   ///< N, along the pipette, as the force guard compares it
-  double depth = 0;         ///< m past the contact point; 0 before the first contact
-  double volume = 0;        ///< m^3, injected since the needle started
-  std::string hold_reason;  ///< why the needle is held; empty: it follows, or not known
-  std::string notice;       ///< why the last command was refused; empty: it was not
+  bool busy = false;                       ///< the controller moves the needle by itself
+  bool waits = false;                      ///< for the operator's command
+  double force = 0;                        ///< N, along the pipette, above the offset at rest
+  double guard_force = 0;                  ///< N, along the pipette, as the force guard compares it
+  double depth = 0;                        ///< m past the contact point; 0 before the first contact
+  double volume = 0;                       ///< m^3, injected since the needle started
+  std::string hold_reason;                 ///< why the needle is held; empty: it follows, or not known
+  std::string notice;                      ///< why the last command was refused; empty: it was not
+  std::optional<HindranceView> hindrance;  ///< an alarm of any node; none: there is none, or nobody tells
   ControllerSettings settings;
 
   /// Messages arrive from the controller.

@@ -35,13 +35,35 @@ struct InjectionControllerConfig {
   static InjectionControllerConfig read(ConfigReader& reader);
 };
 
-/// Controls the needle's set-point: follows the hand's target or moves by itself, within the
-/// guards.
+/// Controls the needle's set-point: follows the hand's target or moves by itself, within the guards.
 ///
-/// Without a valid target, force or needle pose it holds the needle at its set-point. It moves the
-/// needle only in the operating state ENABLED. A hand's targets count from the needle's position
-/// when it was enabled, resumed or held. injection() is valid in every mode. Reaction to the guards
-/// (the injection "stops": PAUSED, outcome guard; allowed then are withdraw, home and disable):
+///     Input --> valid? rig follows? --> observe(): NeedleMonitor, ForceWitness --> events --> injection()
+///                    |                                                               ^
+///                    |   manual:     the hand's target --> WithdrawalGuard -----.    '-- HandObserver (manual)
+///                    '-> by itself:  guards --> InjectionRun -------------------+--> move(): speed, lag --> set-point
+///                        home:       along the pipette, then across ------------'
+///
+/// The states of an injection do not depend on who moves the needle: by hand they are observed, and by the controller
+/// they are brought about, but the table of transitions, the detection, the guards and the witnesses are the same
+/// (doc/design/injection.md). A controller for each of the three modes would be simpler, and each would have its own
+/// notion of a puncture; a guard that is mended in one would be missing in the others. For the same reason the
+/// set-point advances in one function only, which knows the limits of speed and lag; others only take it back to the
+/// needle.
+///
+/// The set-point stays with its needle. A set-point that went on while the needle is blocked, lags or is off would
+/// make the needle leap through the cell once it is free; so it waits for a needle that does not follow, and is where
+/// the needle is while the rig does not follow. What a guard refuses of the hand's motion is discarded, because the
+/// needle must not catch up when the force falls in a puncture.
+///
+/// One force alone cannot tell a dead sensor from a needle that has not touched yet, or a misplaced model from a cell
+/// that is not there. While the controller moves the needle by itself, it therefore asks the other force, the image
+/// and the model of the cell (ForceWitness, Input::predicted_inside). By hand they hold nothing: the person sees and
+/// feels more than they do.
+///
+/// Without a valid target, force or needle pose the controller holds the needle at its set-point. It moves the needle
+/// only in the operating state ENABLED (CRTK). A hand's targets count from the needle's position when it was enabled,
+/// resumed or held. injection() is valid in every mode. Reaction to the guards (the injection "stops": PAUSED,
+/// outcome guard; allowed then are withdraw, home and disable):
 ///
 ///     guard               by hand                       by itself
 ///     force, depth        may only be withdrawn: see    stops, except during withdrawal
@@ -82,6 +104,7 @@ class InjectionController {
     Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< of the pipette, out of the cell, `world`
   };
 
+  /// @pre `config` is valid, as InjectionControllerConfig::read returns it
   explicit InjectionController(const InjectionControllerConfig& config);
 
   /// Executes a command. Returns empty, or the reason for the refusal; the state then stays.
@@ -101,11 +124,12 @@ class InjectionController {
   std::string command(const std::string& command);
   /// As the command withdraw, without a notice: for programs, which use the returned reason.
   std::string withdraw();
-  /// Starts an injection. Returns empty, or the reason for the refusal.
+  /// Starts an injection. Returns empty, or the reason for the refusal: in mode manual, in another state than ENABLED
+  /// and idle, in the cell, after unhome, or with a goal beyond its limits.
   std::string start(const InjectionGoal& goal);
 
-  /// Advances by dt (s). Returns the set-point of the needle (m, `world`); empty while DISABLED or
-  /// in FAULT.
+  /// Advances by dt (s, > 0). Returns the set-point of the needle (m, `world`); empty while DISABLED or in FAULT, and
+  /// before the first valid pose of the needle.
   std::optional<Eigen::Vector3d> step(Input input, double dt);
 
   /// Adapts to a rig that is at most `speed` (m/s) fast and follows with a `lag` (s): the set-point

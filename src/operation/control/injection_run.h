@@ -85,7 +85,6 @@ class InjectionRun {
   void approach(const NeedleMonitor& monitor, double dt, Step& step);
   void contact(const NeedleMonitor& monitor, Step& step);
   void indent(const NeedleMonitor& monitor, double dt, Step& step);
-  void goToDepth(const NeedleMonitor& monitor, double dt, Step& step);
   void through(const NeedleMonitor& monitor, double dt, Step& step);
   void inject(const std::optional<InjectorReport>& injector, double dt, Step& step);
   void retract(double dt, Step& step);

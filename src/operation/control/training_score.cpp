@@ -13,7 +13,7 @@ namespace microinjection {
 namespace {
 
 constexpr char kHeader[] =
-    "operator,session,outcome,peak_force_N,deformation_m,lateral_error_m,time_s,punctures,volume_m3,force_points,"
+    "trainee,session,outcome,peak_force_N,deformation_m,lateral_error_m,time_s,punctures,volume_m3,force_points,"
     "deformation_points,lateral_points,time_points,punctures_points,volume_points,score\n";
 
 constexpr double kStarted = 1e-6;  ///< m of the tip's motion that counts as start
@@ -154,9 +154,9 @@ void checkTrainingName(const std::string& text) {
   }
 }
 
-void appendTrainingRow(const std::string& path, const std::string& operator_name, const std::string& session,
+void appendTrainingRow(const std::string& path, const std::string& trainee, const std::string& session,
                        const TrainingScore& score) {
-  checkTrainingName(operator_name);
+  checkTrainingName(trainee);
   checkTrainingName(session);
   std::string content = contentOf(path);
   if (content.empty()) content = kHeader;
@@ -164,7 +164,7 @@ void appendTrainingRow(const std::string& path, const std::string& operator_name
   if (content.back() != '\n') content += '\n';
   std::ostringstream row;
   row.precision(6);
-  row << operator_name << ',' << session << ',' << toText(score.outcome);
+  row << trainee << ',' << session << ',' << toText(score.outcome);
   for (const TrainingMeasure& measure : score.measures({})) row << ',' << measure.value;
   for (const double points : score.points) row << ',' << points;
   row << ',' << score.score() << '\n';

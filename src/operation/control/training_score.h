@@ -101,12 +101,12 @@ class TrainingSession {
   std::optional<int> punctures_;          ///< of the last sample
 };
 
-/// Appends a row to an operator's history, a CSV file with a row a session. `operator_name` and
+/// Appends a row to an operator's history, a CSV file with a row a session. `trainee` and
 /// `session` (a date, for example) must not contain comma, quote or line break. The file is
 /// replaced atomically; when two programs append at the same time, one row is lost.
 /// @throws std::invalid_argument  for such a text
 /// @throws std::runtime_error  when the file is another table or cannot be written
-void appendTrainingRow(const std::string& path, const std::string& operator_name, const std::string& session,
+void appendTrainingRow(const std::string& path, const std::string& trainee, const std::string& session,
                        const TrainingScore& score);
 /// @throws std::invalid_argument  when `text` cannot be the name of an operator or a session
 void checkTrainingName(const std::string& text);

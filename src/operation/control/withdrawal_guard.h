@@ -31,7 +31,7 @@ class WithdrawalGuard {
 
   /// Whether a needle that is `behind` (m) its set-point, on the way in, is so by more than its readings tremble: then
   /// the set-point has to go back to it when a limit begins.
-  bool lags(double behind) const { return behind > kTremble * play_; }
+  bool lags(double behind) const { return behind > kReadingNoise * play_; }
 
   bool active() const { return !reason_.empty(); }
   const std::string& reason() const { return reason_; }  ///< the limit, as it was last exceeded; empty: none
@@ -41,7 +41,7 @@ class WithdrawalGuard {
   std::string withdraw(double way);
 
  private:
-  static constexpr double kTremble = 0.2;
+  static constexpr double kReadingNoise = 0.2;
 
   std::string beyond(const GuardConfig& limits, const Eigen::Vector3d& force, const Eigen::Vector3d& axis,
                      double depth) const;

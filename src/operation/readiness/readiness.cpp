@@ -19,7 +19,7 @@ constexpr const char* kOrder[] = {"micromanipulator",
                                   "haptic_bridge",
                                   "haptic_device",
                                   "keyboard_hand",
-                                  "operator",
+                                  "virtual_hand",
                                   "microscope",
                                   "camera",
                                   "vision"};

@@ -28,9 +28,9 @@ class Line {
   void add(double value) { out_ << separator() << value; }
   void add(unsigned value) { out_ << separator() << value; }
   void add(const std::optional<double>& value) { value ? add(*value) : add(std::string()); }
-  void add(const std::optional<NotebookEntry::Interval>& interval) {
-    for (const double NotebookEntry::Interval::*part :
-         {&NotebookEntry::Interval::value, &NotebookEntry::Interval::low, &NotebookEntry::Interval::high}) {
+  void add(const std::optional<NotebookEntry::Estimate>& interval) {
+    for (const double NotebookEntry::Estimate::*part :
+         {&NotebookEntry::Estimate::value, &NotebookEntry::Estimate::low, &NotebookEntry::Estimate::high}) {
       add(interval ? std::optional<double>((*interval).*part) : std::nullopt);
     }
   }

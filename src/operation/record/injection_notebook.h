@@ -8,16 +8,16 @@ namespace microinjection {
 /// One line of a laboratory's notebook: a cell that the needle has touched, and what came of it. Values
 /// that nobody knows are empty.
 struct NotebookEntry {
-  struct Interval {
+  struct Estimate {
     double value = 0, low = 0, high = 0;
   };
   std::string time;                        ///< local date and time at the end, ISO 8601
   std::string cell;                        ///< name of the session's scene
   std::optional<double> diameter;          ///< m, of the served cell
-  std::optional<Interval> modulus;         ///< Pa, estimated; 95 %
+  std::optional<Estimate> modulus;         ///< Pa, estimated; 95 %
   std::string verdict;                     ///< of the estimate
-  std::optional<Interval> expected_depth;  ///< m, of the puncture, at half of its depth
-  std::optional<Interval> expected_force;  ///< N
+  std::optional<Estimate> expected_depth;  ///< m, of the puncture, at half of its depth
+  std::optional<Estimate> expected_force;  ///< N
   std::optional<double> puncture_depth;    ///< m, met
   std::optional<double> puncture_force;    ///< N, met
   double peak_force = 0;                   ///< N, along the pipette

@@ -24,7 +24,7 @@ std::string yamlQuoted(const std::string& text) {
 std::string toYaml(const TrainingConfig& config, const std::string& session, const TrainingScore& score, int left_out) {
   std::ostringstream out;
   out.precision(9);
-  out << "operator: " << yamlQuoted(config.operator_name) << "\nsession: " << yamlQuoted(session)
+  out << "trainee: " << yamlQuoted(config.trainee) << "\nsession: " << yamlQuoted(session)
       << "\noutcome: " << toText(score.outcome) << "\nreason: " << yamlQuoted(score.reason)
       << "\nscore: " << score.score() << "\nmoments_left_out: " << left_out << "\nmeasures:\n";
   const double* points = score.points.data();
@@ -37,7 +37,7 @@ std::string toYaml(const TrainingConfig& config, const std::string& session, con
 
 std::string toText(const TrainingConfig& config, const std::string& session, const TrainingScore& score) {
   std::ostringstream out;
-  out << "training of " << config.operator_name << ", session " << session << ": " << std::fixed;
+  out << "training of " << config.trainee << ", session " << session << ": " << std::fixed;
   if (score.outcome == TrainingOutcome::kComplete) {
     out << std::setprecision(0) << score.score() << " of 100 points";
   } else {
@@ -58,16 +58,16 @@ std::string toText(const TrainingConfig& config, const std::string& session, con
 
 TrainingConfig TrainingConfig::read(ConfigReader& reader) {
   TrainingConfig config;
-  reader.text("operator", config.operator_name, ConfigReader::kRequired);
+  reader.text("trainee", config.trainee, ConfigReader::kRequired);
   reader.path("history", config.history, ConfigReader::kRequired);
   reader.choice("force", config.force, {"predicted", "measured"});
   reader.choice("punctures", config.punctures, {"cell", "felt"});
   ConfigReader task = reader.section("task");
   config.task = TrainingTask::read(task);
   try {
-    if (!config.operator_name.empty()) checkTrainingName(config.operator_name);
+    if (!config.trainee.empty()) checkTrainingName(config.trainee);
   } catch (const std::invalid_argument& error) {
-    reader.error("operator", error.what());
+    reader.error("trainee", error.what());
   }
   return config;
 }
@@ -120,9 +120,8 @@ TrainingLog::Result TrainingLog::finish(const std::string& folder, const std::st
   attempt([&] {
     writeFileAtomically(folder + "/training.yaml", toYaml(config_, session, result.score, session_.leftOut()));
   });
-  result.in_history = result.score.outcome != TrainingOutcome::kUntouched && attempt([&] {
-                        appendTrainingRow(config_.history, config_.operator_name, session, result.score);
-                      });
+  result.in_history = result.score.outcome != TrainingOutcome::kUntouched &&
+                      attempt([&] { appendTrainingRow(config_.history, config_.trainee, session, result.score); });
   return result;
 }
 

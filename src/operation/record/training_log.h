@@ -11,17 +11,17 @@
 namespace microinjection {
 
 struct TrainingConfig {
-  std::string operator_name;
+  std::string trainee;
   std::string history;              ///< path of the CSV file of all sessions; created when absent
   std::string force = "predicted";  ///< the scored force: predicted or measured
   std::string punctures = "cell";   ///< cell: those of the cell model; felt: those detected by the controller
   TrainingTask task;
 
-  /// Keys operator, history (both required), force, punctures, and the section task.
+  /// Keys trainee, history (both required), force, punctures, and the section task.
   static TrainingConfig read(ConfigReader& reader);
 };
 
-/// Scores an operator's session from the rows of its table. Writes training.yaml beside the table
+/// Scores an trainee's session from the rows of its table. Writes training.yaml beside the table
 /// and, after a contact, a row of the history.
 class TrainingLog {
  public:

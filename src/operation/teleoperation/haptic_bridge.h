@@ -32,22 +32,38 @@ struct HapticBridgeConfig {
   PassivityConfig passivity;
 
   static HapticBridgeConfig read(ConfigReader& reader);
-  /// The configuration in front of a LinkLeader. Proxy and contact damping then are at the rig,
-  /// where they do not wait for the network.
+  /// The configuration in front of a LinkLeader. Proxy and contact damping then are at the rig, where they do not
+  /// wait for the network: at the bridge, the proxy and the leader's damping drove each other without bound.
   HapticBridgeConfig beforeLink() const;
 };
 
 /// Bilateral coupling of a haptic device and a needle: position forward, force back.
 ///
-///     hand -> frame -> tremor filter -> coupling -> motion mapping -> fixtures -> target of the
-///     needle
-///     hand <- frame <- passivity, limits <- gain, ramp <- force source <- tip forces
+///     hand --> frame --> tremor filter --> + --> motion mapping --> fixtures --> target of the needle
+///                                          ^ proxy                    |
+///                                  virtual coupling                   | push
+///                                          ^                          v
+///     hand <-- frame <-- limits <-- passivity, ramp, damping <------- + <-- gain <-- force source <-- tip forces
 ///
-/// While the clutch is pressed, the hand moves freely and the needle holds. Its release sets a new
-/// reference of hand and needle. So does each hold for an invalid input in mode `index`
-/// (EngagementConfig). In a hold, and in position mode when the followed hand is too fast to be
-/// holding the device, the force falls to zero: at the limiter's rate while the hand's position is
-/// valid, so that it does not drop, otherwise at once.
+/// Engagement decides when the needle follows. The order of the two chains follows from what has to hold:
+///
+/// - The frame is the outermost link, so that everything within is in `world`.
+/// - A force that comes late gives the hand energy that the cell never had. Position is scaled down and force up, by
+///   a factor of 2e8 together with the defaults, which makes of a tiny energy at the tip a dangerous one at the hand.
+///   Passivity is therefore observed at the hand's scale, behind the gain, and with the force after all limits, which
+///   is the one that the device holds.
+/// - The proxy yields to the force before the needle moves, so that no contact is stiffer than the device can render.
+///   A smaller gain would bound the stiffness, too, but weaken a soft cell as much as glass; the proxy takes 3 % of
+///   the force of a cell of 60 N/m (VirtualCoupling).
+/// - The limiter is the last link, because a jump of any part before it must not kick the hand: a puncture, or a
+///   change of the force's model.
+///
+/// doc/design/stability.md explains each link and has what was tried and given up.
+///
+/// While the clutch is pressed, the hand moves freely and the needle holds. Its release sets a new reference of hand
+/// and needle. So does each hold for an invalid input in mode `index` (EngagementConfig). In a hold, and in position
+/// mode when the followed hand is too fast to be holding the device, the force falls to zero: at the limiter's rate
+/// while the hand's position is valid, so that it does not drop, otherwise at once.
 class HapticBridge {
  public:
   /// Valid inputs of this cycle; empty: absent, stale or not finite.
@@ -71,7 +87,7 @@ class HapticBridge {
   /// @throws ConfigError when the axes are not a rotation or a fixture has no direction.
   explicit HapticBridge(const HapticBridgeConfig& config);
 
-  /// One cycle of dt (s).
+  /// One cycle of dt (s, > 0), also while inputs are invalid: the observer counts the time.
   Output step(const Input& input, double dt);
 
   double delay() const { return tremor_.delay(); }  ///< s, of slow motion between hand and needle

@@ -9,6 +9,7 @@
 #include "base/config_errors.h"
 #include "base/config_reader.h"
 #include "base/errors.h"
+#include "base/user_data.h"
 
 namespace microinjection {
 namespace {
@@ -140,6 +141,10 @@ CameraCalibration readNode(const YAML::Node& node, const std::string& name) {
 }
 
 }  // namespace
+
+std::string calibrationPath(const std::string& configured) {
+  return configured.empty() ? userDataFile("calibration.yaml") : configured;
+}
 
 std::string toYaml(const CameraCalibration& calibration) {
   std::ostringstream out;

@@ -6,6 +6,10 @@
 
 namespace microinjection {
 
+/// File of the last calibration: `configured`, or where that is empty cell_microinjection/calibration.yaml in
+/// $XDG_DATA_HOME, else in ~/.local/share.
+std::string calibrationPath(const std::string& configured);
+
 /// YAML text of a calibration: every value with its unit, its 95 % interval and its covariances.
 std::string toYaml(const CameraCalibration& calibration);
 

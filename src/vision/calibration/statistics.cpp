@@ -2,7 +2,6 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
@@ -15,10 +14,6 @@ double studentLimit(double confidence, double freedom) {
 
 double fisherLimit(double confidence, double n, double m) {
   return boost::math::quantile(boost::math::fisher_f(n, m), confidence);
-}
-
-double chiSquaredLimit(double confidence, double freedom) {
-  return boost::math::quantile(boost::math::chi_squared(freedom), confidence);
 }
 
 double robustDeviation(const std::vector<double>& values) {

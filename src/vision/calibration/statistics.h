@@ -27,8 +27,6 @@ constexpr double kRayleighMedian = 1.1774;
 double studentLimit(double confidence, double freedom);
 /// The f that Fisher's F(n, m) stays below with probability `confidence`.
 double fisherLimit(double confidence, double n, double m);
-/// The x that chi^2 with `freedom` degrees of freedom stays below with probability `confidence`.
-double chiSquaredLimit(double confidence, double freedom);
 
 /// 1.4826 times the median of the distances from the median: the deviation of normal values,
 /// unmoved by fewer than half of outliers. @pre not empty

@@ -5,9 +5,9 @@
 #include <optional>
 #include <string>
 
-#include "vision/detection/cell_size.h"
-#include "vision/detection/specimen_tracker.h"
+#include "vision/layers/cell_size.h"
 #include "vision/measurement/cell_offset.h"
+#include "vision/track/specimen_tracker.h"
 
 namespace microinjection {
 

@@ -2,8 +2,8 @@
 
 #include <optional>
 
-#include "vision/detection/cell_detector.h"
-#include "vision/detection/pipette_detector.h"
+#include "vision/layers/cell_detector.h"
+#include "vision/pipette/pipette_detector.h"
 
 namespace microinjection {
 

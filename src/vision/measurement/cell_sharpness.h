@@ -1,7 +1,7 @@
 #pragma once
 
-#include "vision/detection/cell_detector.h"
-#include "vision/detection/frame.h"
+#include "vision/frame/frame.h"
+#include "vision/layers/cell_detector.h"
 
 namespace microinjection {
 

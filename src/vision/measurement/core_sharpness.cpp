@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vision/detection/pipette_strip.h"
+#include "vision/pipette/pipette_strip.h"
 
 namespace microinjection {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "vision/detection/frame.h"
+#include "vision/frame/frame.h"
 
 namespace microinjection {
 

@@ -106,7 +106,7 @@ void FocusSearch::observe(const Input& input) {
     readings_.push_back(*reading);
   } else if (input.now - since_ > config_.image_time) {
     failure_ = "no fresh image at " + micrometres(targets_.front().height) +
-               (input.blind.empty() ? ": the images are stale" : ": " + input.blind);
+               (input.image_problem.empty() ? ": the images are stale" : ": " + input.image_problem);
   }
   if (static_cast<int>(readings_.size()) >= config_.images) next(input);
 }

@@ -42,7 +42,7 @@ class FocusSearch {
     double now = 0;
     std::optional<double> position;  ///< m, of the focus; none: not known now
     std::optional<Reading> reading;  ///< of the newest image; none: that one is not usable
-    std::string blind;               ///< why it is not
+    std::string image_problem;       ///< why it is not
   };
 
   /// `start`: m, position of the focus. `origin`: m, from which the reach counts; that of an earlier

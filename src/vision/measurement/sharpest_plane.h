@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "vision/camera/frame_source.h"
-#include "vision/detection/specimen_tracker.h"
+#include "vision/track/specimen_tracker.h"
 
 namespace microinjection {
 

@@ -83,24 +83,24 @@ void TouchSearch::averageForce(const Input& input, bool arrived) {
 /// Takes the newest image if it counts; else sets what it waits for.
 bool TouchSearch::look(const Input& input) {
   const double rested = restedSince(input) + config_.settle_time;
-  if (!input.sight || input.sight->stamp <= rested || input.sight->stamp > input.now) {
-    waits_for_ = input.blind.empty() ? "a fresh image" : input.blind;
-  } else if (!input.sight->certain && !gapLine()) {
+  if (!input.observation || input.observation->stamp <= rested || input.observation->stamp > input.now) {
+    waits_for_ = input.image_problem.empty() ? "a fresh image" : input.image_problem;
+  } else if (!input.observation->certain && !gapLine()) {
     waits_for_ = "a certain cell and tip";
   } else if (force_at_start_ && rest_.count < kLeastForces) {
     waits_for_ = kMoreForces;
   } else {
-    take(*input.sight, input.now);
+    take(*input.observation, input.now);
     return true;
   }
   return false;
 }
 
 /// The gap of an image, if its tip is certain or where the travel has it.
-double TouchSearch::trustedGap(const Sight& sight) const {
-  const std::optional<Eigen::Vector2d> line = sight.certain ? std::nullopt : gapLine();
-  const bool stray = line && std::abs(line->x() + 1e6 * travel_ * line->y() - sight.gap) > kStray;
-  return stray ? std::nan("") : sight.gap;
+double TouchSearch::trustedGap(const Observation& observation) const {
+  const std::optional<Eigen::Vector2d> line = observation.certain ? std::nullopt : gapLine();
+  const bool stray = line && std::abs(line->x() + 1e6 * travel_ * line->y() - observation.gap) > kStray;
+  return stray ? std::nan("") : observation.gap;
 }
 
 /// Begins the sentence that names what a step has waited for in vain.
@@ -129,12 +129,13 @@ void TouchSearch::watch(const Input& input) {
   failure_ = text.str();
 }
 
-void TouchSearch::take(const Sight& sight, double now) {
-  if (!std::isfinite(sight.displacement) || !std::isfinite(sight.deviation) || !std::isfinite(sight.gap)) {
+void TouchSearch::take(const Observation& observation, double now) {
+  if (!std::isfinite(observation.displacement) || !std::isfinite(observation.deviation) ||
+      !std::isfinite(observation.gap)) {
     failure_ = "what the image shows is not finite";
     return;
   }
-  if (samples_.empty() && sight.gap <= 0) {
+  if (samples_.empty() && observation.gap <= 0) {
     failure_ = "the tip is at the cell's outline already: begin above it";
     return;
   }
@@ -143,9 +144,9 @@ void TouchSearch::take(const Sight& sight, double now) {
     resting_force_ = rest_.value() - *force_at_start_;
     rest_ = {};
   }
-  const double gap = trustedGap(sight);
-  displacement_ = sight.displacement;
-  samples_.push_back({travel_, {sight.displacement, 0}, std::max(sight.deviation, kLeastDeviation)});
+  const double gap = trustedGap(observation);
+  displacement_ = observation.displacement;
+  samples_.push_back({travel_, {observation.displacement, 0}, std::max(observation.deviation, kLeastDeviation)});
   gaps_.push_back(gap);
   const std::size_t newest = std::min(samples_.size(), kNewest);
   report_ = findTouch({samples_.end() - static_cast<std::ptrdiff_t>(newest), samples_.end()}, config_.touch,

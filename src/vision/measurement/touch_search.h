@@ -49,7 +49,7 @@ struct TouchSearchConfig {
 /// - the travel ends without a touch.
 class TouchSearch {
  public:
-  struct Sight {
+  struct Observation {
     double stamp = 0;         ///< s, exposure of the image
     double displacement = 0;  ///< px, of the outline under the tip, along the needle
     double deviation = 0;     ///< px, standard deviation of it
@@ -61,8 +61,8 @@ class TouchSearch {
     double now = 0;
     std::optional<Eigen::Vector3d> position;  ///< m, of the needle; none: not known now
     double rested_since = 0;                  ///< s
-    std::optional<Sight> sight;               ///< of the newest image; none: it does not show cell and tip
-    std::string blind;                        ///< why not
+    std::optional<Observation> observation;   ///< of the newest image; none: it does not show cell and tip
+    std::string image_problem;                ///< why not
     std::optional<double> force;              ///< N along the needle; none: not known now
     double force_stamp = 0;                   ///< s, of that reading
   };
@@ -104,8 +104,8 @@ class TouchSearch {
   double restedSince(const Input& input) const { return std::max(input.rested_since, since_); }
   bool look(const Input& input);
   std::string noStep() const;
-  double trustedGap(const Sight& sight) const;
-  void take(const Sight& sight, double now);
+  double trustedGap(const Observation& observation) const;
+  void take(const Observation& observation, double now);
   void compareWithOutline();
   std::optional<Eigen::Vector2d> gapLine() const;
   void fail(const std::string& text, double value, const std::string& rest);

@@ -4,7 +4,6 @@
 
 #include "base/errors.h"
 #include "vision/calibration/calibration_file.h"
-#include "vision/calibration/calibration_path.h"
 #include "vision/segmentation/learned_eye.h"
 
 namespace microinjection {

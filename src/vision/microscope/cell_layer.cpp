@@ -73,7 +73,7 @@ class CellPicture {
   }
 
   void addBorder(const BorderProfile& profile, const OutlineDistance& border, const cv::Mat& grains, float granules) {
-    const bool dic = optics_.look() == Optics::Look::kDic;
+    const bool dic = optics_.contrastMode() == ContrastMode::kDic;
     const auto grain_path = static_cast<float>(kGranulePath * optics_.contrast());
     const auto contrast = static_cast<float>(optics_.contrast());
     cv::Mat target = change_(border.region - region_.tl());

@@ -30,7 +30,8 @@ cv::Mat Microscope::transmission(const MicroscopeScene& scene, double focus) {
   const CameraView& view = config_.camera;
   OpticalImage image;
   image.transmission = cv::Mat(view.height, view.width, CV_32F, cv::Scalar(1));
-  if (optics_.look() == Optics::Look::kDic) image.path = cv::Mat(view.height, view.width, CV_32F, cv::Scalar(0));
+  if (optics_.contrastMode() == ContrastMode::kDic)
+    image.path = cv::Mat(view.height, view.width, CV_32F, cv::Scalar(0));
   for (const CellScene& cell : scene.cells) addCell(cell, focus, view, optics_, texture_, image);
   if (scene.holding) addPipette(*scene.holding, focus, view, optics_, image);
   if (scene.injection) addPipette(*scene.injection, focus, view, optics_, image);
@@ -42,9 +43,9 @@ cv::Mat Microscope::transmission(const MicroscopeScene& scene, double focus) {
 /// Two images of the light's phase, a shear apart, interfere: the intensity follows the phase's
 /// derivative along the shear.
 void Microscope::shear(OpticalImage& image) const {
-  const double shear = config_.look.shear / config_.camera.pixel_size;  // px
-  const auto right = static_cast<float>(0.5 * shear * std::cos(config_.look.shear_angle));
-  const auto down = static_cast<float>(0.5 * shear * std::sin(config_.look.shear_angle));
+  const double shear = config_.contrast.shear / config_.camera.pixel_size;  // px
+  const auto right = static_cast<float>(0.5 * shear * std::cos(config_.contrast.shear_angle));
+  const auto down = static_cast<float>(0.5 * shear * std::sin(config_.contrast.shear_angle));
   const cv::Matx33f derivative(0, -down, 0, -right, 0, right, 0, down, 0);
   cv::Mat change;
   cv::filter2D(image.path, change, CV_32F, derivative, cv::Point(-1, -1), 1, cv::BORDER_REPLICATE);

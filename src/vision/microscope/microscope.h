@@ -15,7 +15,7 @@ namespace microinjection {
 ///
 /// Every border is rendered from its signed distance, by the response of the objective to a straight
 /// edge at the border's distance from the plane in focus. The response is odd about the edge, so
-/// that a border stays where the scene has it, to a few hundredths of a pixel, in every look and
+/// that a border stays where the scene has it, to a few hundredths of a pixel, in every contrast mode and
 /// focus. doc/design/microscope.md has the model and what it leaves out.
 ///
 /// Not for several threads at once: it keeps blurred textures.

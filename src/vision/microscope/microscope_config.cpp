@@ -7,7 +7,6 @@
 namespace microinjection {
 namespace {
 
-const std::vector<std::string> kLooks = {"bright_field", "phase", "dic"};
 const Range kAperture = Range::closed(0.01, 1.5);
 const Range kCondenser = Range::closed(0.005, 1.5);
 const Range kWavelength = Range::closed(0.2e-6, 2e-6);  // m
@@ -37,12 +36,12 @@ MicroscopeConfig MicroscopeConfig::read(ConfigReader& reader) {
   objective.number("numerical_aperture", config.objective.numerical_aperture, kAperture);
   objective.number("condenser_aperture", config.objective.condenser_aperture, kCondenser);
   objective.number("wavelength", config.objective.wavelength, kWavelength);
-  ConfigReader look = reader.section("look");
-  look.choice("kind", config.look.kind, kLooks);
-  look.number("contrast", config.look.contrast, kContrast);
-  look.number("shear_angle", config.look.shear_angle, kShearAngle);
-  look.number("shear", config.look.shear, kShear);
-  look.number("halo", config.look.halo, kHalo);
+  ConfigReader contrast = reader.section("contrast");
+  readContrastMode(contrast, "mode", config.contrast.mode, false);
+  contrast.number("strength", config.contrast.strength, kContrast);
+  contrast.number("shear_angle", config.contrast.shear_angle, kShearAngle);
+  contrast.number("shear", config.contrast.shear, kShear);
+  contrast.number("halo", config.contrast.halo, kHalo);
   ConfigReader illumination = reader.section("illumination");
   illumination.number("level", config.illumination.level, kLevel);
   illumination.vector("gradient", config.illumination.gradient, kGradient);
@@ -66,11 +65,11 @@ void MicroscopeConfig::validate() const {
   errors.require(kAperture, "numerical_aperture", objective.numerical_aperture);
   errors.require(kCondenser, "condenser_aperture", objective.condenser_aperture);
   errors.require(kWavelength, "wavelength", objective.wavelength, " m");
-  errors.requireOneOf(kLooks, "kind", look.kind);
-  errors.require(kContrast, "contrast", look.contrast);
-  errors.require(kShearAngle, "shear_angle", look.shear_angle, " rad");
-  errors.require(kShear, "shear", look.shear, " m");
-  errors.require(kHalo, "halo", look.halo, " m");
+  if (contrast.mode == ContrastMode::kUnknown) errors.add("mode = unknown: must be one of: bright_field, phase, dic");
+  errors.require(kContrast, "strength", contrast.strength);
+  errors.require(kShearAngle, "shear_angle", contrast.shear_angle, " rad");
+  errors.require(kShear, "shear", contrast.shear, " m");
+  errors.require(kHalo, "halo", contrast.halo, " m");
   errors.require(kLevel, "level", illumination.level);
   errors.require(kGradient, "gradient x", illumination.gradient.x());
   errors.require(kGradient, "gradient y", illumination.gradient.y());

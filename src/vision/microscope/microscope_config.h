@@ -5,6 +5,7 @@
 
 #include "base/config_reader.h"
 #include "vision/camera/camera_view.h"
+#include "vision/frame/contrast_mode.h"
 
 namespace microinjection {
 
@@ -14,12 +15,12 @@ struct ObjectiveConfig {
   double wavelength = 0.55e-6;       ///< m
 };
 
-struct LookConfig {
-  std::string kind = "bright_field";  ///< bright_field, phase or dic
-  double contrast = 1;                ///< of everything in the scene, over that of its optics
-  double shear_angle = 0.8;           ///< rad, dic: direction of the shear in the image, from x towards y (down)
-  double shear = 0.6e-6;              ///< m, dic: distance of the sheared images
-  double halo = 4.0e-6;               ///< m, phase: rms width of the halo
+struct ContrastConfig {
+  ContrastMode mode = ContrastMode::kBrightField;  ///< kUnknown is not valid
+  double strength = 1;                             ///< of everything in the scene, over that of its optics
+  double shear_angle = 0.8;  ///< rad, dic: direction of the shear in the image, from x towards y (down)
+  double shear = 0.6e-6;     ///< m, dic: distance of the sheared images
+  double halo = 4.0e-6;      ///< m, phase: rms width of the halo
 };
 
 struct IlluminationConfig {
@@ -41,7 +42,7 @@ struct SensorConfig {
 struct MicroscopeConfig {
   CameraView camera;
   ObjectiveConfig objective;
-  LookConfig look;
+  ContrastConfig contrast;
   IlluminationConfig illumination;
   SensorConfig sensor;
 

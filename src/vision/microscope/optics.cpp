@@ -15,11 +15,6 @@ constexpr double kAbsorptionInDic = 0.4;  // its aperture is open, so that borde
 
 double square(double value) { return value * value; }
 
-Optics::Look lookOf(const std::string& kind) {
-  if (kind == "phase") return Optics::Look::kPhase;
-  return kind == "dic" ? Optics::Look::kDic : Optics::Look::kBrightField;
-}
-
 /// Rises from 0 at 0 to 1 at 1, without a slope at both ends, so that it displaces no edge.
 double smoothRise(double t) {
   t = std::clamp(t, 0.0, 1.0);
@@ -29,8 +24,8 @@ double smoothRise(double t) {
 }  // namespace
 
 Optics::Optics(const MicroscopeConfig& config)
-    : look_(lookOf(config.look.kind)),
-      contrast_(config.look.contrast),
+    : contrast_mode_(config.contrast.mode),
+      contrast_(config.contrast.strength),
       pixel_size_(config.camera.pixel_size),
       variance_in_focus_(
           square(kAiry * config.objective.wavelength / config.objective.numerical_aperture / pixel_size_) +
@@ -38,7 +33,7 @@ Optics::Optics(const MicroscopeConfig& config)
       // A uniform disc of radius r has the variance r^2 / 4 along each axis.
       slope_(config.objective.condenser_aperture / 2 / pixel_size_),
       diffraction_(config.objective.wavelength / (2 * M_PI) / square(pixel_size_)),
-      halo_variance_(square(config.look.halo / pixel_size_)) {}
+      halo_variance_(square(config.contrast.halo / pixel_size_)) {}
 
 double Optics::blur(double defocus) const { return std::sqrt(variance_in_focus_ + square(slope_ * defocus)); }
 
@@ -53,7 +48,8 @@ EdgeResponse::Depth Optics::haloDepth(double defocus) const {
 BorderProfile::BorderProfile(const Optics& optics, double defocus, const std::vector<Step>& steps, double dome,
                              double dome_width) {
   const EdgeResponse::Depth depth = optics.depth(defocus), halo = optics.haloDepth(defocus);
-  const bool has_halo = optics.look() == Optics::Look::kPhase, dic = optics.look() == Optics::Look::kDic;
+  const bool has_halo = optics.contrastMode() == ContrastMode::kPhase,
+             dic = optics.contrastMode() == ContrastMode::kDic;
   double farthest = 0;
   for (const Step& step : steps) farthest = std::max(farthest, std::abs(step.inside));
   reach_ = std::max(farthest + std::max(depth.reach(), has_halo ? halo.reach() : 0.0), dome == 0 ? 0 : dome_width) + 1;

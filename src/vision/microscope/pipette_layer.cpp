@@ -85,7 +85,7 @@ struct End {
 
 /// The kernel of the edge response is a product of one along and one across the axis, so that the
 /// response of a band with an end is the product of theirs. Without `end`: far behind it, where that is 1.
-Change changeAt(const Station& station, Optics::Look look, float r, const std::optional<End>& end) {
+Change changeAt(const Station& station, ContrastMode mode, float r, const std::optional<End>& end) {
   const Value across = bandOf(station.depth, r, station.outer, station.slant);
   const Value lumen = bandOf(station.depth, r, station.inner, station.slant);
   const Value outer = end ? end->value * across : across;
@@ -95,7 +95,7 @@ Change changeAt(const Station& station, Optics::Look look, float r, const std::o
   change.transmission = -station.wall * darknessOf(station, std::min(r, station.outer)) * (outer - inner).real() -
                         station.lumen * inner.real() + station.gain * core;
   if (end) change.transmission -= kRim * station.wall * ((end->value - end->rim) * across).real();
-  if (look == Optics::Look::kPhase) {
+  if (mode == ContrastMode::kPhase) {
     const float halo = (end ? end->halo : 1) * bandOf(station.halo, r, station.outer, station.slant).real();
     change.transmission -= 0.5F * station.phase * (outer.real() - halo);
   } else {
@@ -159,7 +159,7 @@ class TubePicture {
     lip_ = static_cast<float>(tube.lip);
     rim_ = static_cast<float>(tube.rim);
     back_ = static_cast<float>(end_.depth.reach());
-    if (optics.look() == Optics::Look::kPhase) back_ = std::max(back_, static_cast<float>(end_.halo.reach()));
+    if (optics.contrastMode() == ContrastMode::kPhase) back_ = std::max(back_, static_cast<float>(end_.halo.reach()));
     far_ = lip_ + (back_ + rim_) / (lip_ > 0 ? kSteepestCosine : 1);
     placeStations();
   }
@@ -196,7 +196,7 @@ class TubePicture {
 
   float reachOf(const Station& station) const {
     double reach = station.depth.reach();
-    if (optics_.look() == Optics::Look::kPhase) reach = std::max(reach, station.halo.reach());
+    if (optics_.contrastMode() == ContrastMode::kPhase) reach = std::max(reach, station.halo.reach());
     return station.outer + static_cast<float>(reach / station.slant);
   }
 
@@ -213,7 +213,7 @@ class TubePicture {
                                   stations_.size() - 1);
       if (s < -back_ || r > widths_[place]) continue;
       const std::optional<End> end = s < far_ ? std::optional<End>(endAt(s, r)) : std::nullopt;
-      const Change change = changeAt(stations_[place], optics_.look(), r, end);
+      const Change change = changeAt(stations_[place], optics_.contrastMode(), r, end);
       transmission[x] *= std::max(0.0F, 1 + contrast * change.transmission);
       if (path) path[x] += contrast * change.path;
     }
@@ -227,7 +227,7 @@ class TubePicture {
       const float cosine = std::sqrt(1 - beside * beside);
       behind = (s - lip_ * (1 - cosine)) * cosine;
     }
-    const float halo = optics_.look() == Optics::Look::kPhase ? end_.halo.at(behind).real() : 1;
+    const float halo = optics_.contrastMode() == ContrastMode::kPhase ? end_.halo.at(behind).real() : 1;
     return {end_.depth.at(behind), end_.depth.at(behind - rim_), halo};
   }
 

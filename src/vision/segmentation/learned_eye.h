@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vision/detection/proposal.h"
+#include "vision/frame/proposal.h"
 #include "vision/segmentation/segmenter.h"
 
 namespace microinjection {
@@ -12,7 +12,7 @@ class LearnedEye : public SecondEye {
   LearnedEye() = default;
   explicit LearnedEye(const std::string& weights) : segmenter_(weights) {}
 
-  Proposal look(const Frame& frame) override { return proposalOf(segmenter_.segment(frame)); }
+  Proposal propose(const Frame& frame) override { return proposalOf(segmenter_.segment(frame)); }
   /// At a part of the frame about the pipette's end: its place is a third as coarse then.
   ProposedPipette lookCloser(const Frame& frame, const std::string& kind, const ProposedPipette& pipette) override;
 

@@ -26,14 +26,14 @@ cv::Mat render(const TrainingScene& drawn, RandomDraw& random, Texture& texture)
   const Optics optics(drawn.microscope);
   OpticalImage image;
   image.transmission = cv::Mat(view.height, view.width, CV_32F, cv::Scalar(1));
-  const bool dic = optics.look() == Optics::Look::kDic;
+  const bool dic = optics.contrastMode() == ContrastMode::kDic;
   if (dic) image.path = cv::Mat(view.height, view.width, CV_32F, cv::Scalar(0));
   for (const CellScene& cell : drawn.scene.cells) addCell(cell, drawn.focus, view, optics, texture, image);
   if (drawn.scene.holding) addPipette(*drawn.scene.holding, drawn.focus, view, optics, image);
   if (drawn.scene.injection) addPipette(*drawn.scene.injection, drawn.focus, view, optics, image);
   for (const Debris& debris : drawn.scene.debris) addDebris(debris, drawn.focus, view, optics, image);
   if (!dic) return image.transmission;
-  const double angle = drawn.microscope.look.shear_angle, strength = random.within(0.15, 0.6);
+  const double angle = drawn.microscope.contrast.shear_angle, strength = random.within(0.15, 0.6);
   const auto right = static_cast<float>(strength * std::cos(angle)),
              down = static_cast<float>(strength * std::sin(angle));
   cv::Mat shear;
@@ -49,7 +49,7 @@ TrainingImage TrainingImages::panel(std::uint64_t seed) {
   RandomDraw random(seed);
   const TrainingScene drawn = drawTrainingScene(random);
   TrainingImage image;
-  image.look = drawn.microscope.look.kind;
+  image.contrast_mode = drawn.microscope.contrast.mode;
   image.label = labelImage(drawn.scene, drawn.microscope.camera);
   cv::Mat light = render(drawn, random, texture_);
   addSpecimenEffects(random, light, image.label);

@@ -4,6 +4,7 @@
 #include <opencv2/core/mat.hpp>
 #include <string>
 
+#include "vision/frame/contrast_mode.h"
 #include "vision/microscope/texture.h"
 #include "vision/segmentation/working_image.h"
 
@@ -11,9 +12,9 @@ namespace microinjection {
 
 /// A picture to learn from, with the class of each pixel.
 struct TrainingImage {
-  cv::Mat picture;   ///< CV_8U
-  cv::Mat label;     ///< CV_8U, PixelClass, of the same size
-  std::string look;  ///< bright_field, phase or dic
+  cv::Mat picture;  ///< CV_8U
+  cv::Mat label;    ///< CV_8U, PixelClass, of the same size
+  ContrastMode contrast_mode = ContrastMode::kUnknown;
 };
 
 /// Label of the pixels of a WorkingImage that lie outside its region: they are not learnt.

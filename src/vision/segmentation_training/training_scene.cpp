@@ -85,12 +85,14 @@ class TrainingSceneMaker {
     microscope.objective.numerical_aperture = random_.within(0.2, 0.9);
     microscope.objective.condenser_aperture = logWithin(random_, 0.03, 0.9);
     const double kind = random_.within(0, 1);
-    microscope.look.kind = kind < 0.5 ? "bright_field" : kind < 0.7 ? "phase" : "dic";
-    microscope.look.contrast = random_.within(0.5, 1.6);
-    microscope.look.shear_angle = random_.within(-M_PI, M_PI);
+    microscope.contrast.mode = kind < 0.5   ? ContrastMode::kBrightField
+                               : kind < 0.7 ? ContrastMode::kPhase
+                                            : ContrastMode::kDic;
+    microscope.contrast.strength = random_.within(0.5, 1.6);
+    microscope.contrast.shear_angle = random_.within(-M_PI, M_PI);
     // At least half a pixel, so that a coarse image shows it, too.
-    microscope.look.shear = std::clamp(random_.within(0.5, 1.5) * microscope.camera.pixel_size, 0.05e-6, 10e-6);
-    microscope.look.halo = std::clamp(random_.within(0.03, 0.25) * radius_, 0.5e-6, 50e-6);
+    microscope.contrast.shear = std::clamp(random_.within(0.5, 1.5) * microscope.camera.pixel_size, 0.05e-6, 10e-6);
+    microscope.contrast.halo = std::clamp(random_.within(0.03, 0.25) * radius_, 0.5e-6, 50e-6);
     made_.focus = random_.chance(0.15) ? random_.within(-40e-6, 40e-6) : random_.within(-15e-6, 15e-6);
   }
 

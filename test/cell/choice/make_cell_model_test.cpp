@@ -29,7 +29,7 @@ class ServeNeedle : public testing::Test {
   void TearDown() override { fs::remove_all(cache_); }
 
   static std::string file(const Scene& scene) {
-    return preparedFile(scene, Preparation::plan(scene, PreparationRange::standard(scene)));
+    return surrogateFile(scene, SurrogatePlan::plan(scene, SurrogateRange::standard(scene)));
   }
 
   static std::string refusal(const Scene& scene, const std::string& model) {
@@ -48,7 +48,7 @@ bool has(const std::string& text, const std::string& part) { return text.find(pa
 
 TEST_F(ServeNeedle, AnUnpreparedRoundedTipIsLiveWithAWarning) {
   CellModelConfig config;
-  config.online.fixed_period = true;
+  config.live.fixed_period = true;
   const ChosenCellModel served = makeCellModel(pipette(), "auto", config, "a.yaml");
   EXPECT_FALSE(served.as_required);
   EXPECT_TRUE(has(served.description, "not prepared; run: rosrun cell_microinjection prepare --scene a.yaml"))
@@ -71,10 +71,10 @@ TEST_F(ServeNeedle, AnUnpreparedDiscIsLiveOnLinearTetrahedra) {
 }
 
 TEST_F(ServeNeedle, PreparedRefusesWhatIsNot) {
-  EXPECT_TRUE(has(refusal(pipette(), "prepared"), "not prepared; run: rosrun")) << refusal(pipette(), "prepared");
+  EXPECT_TRUE(has(refusal(pipette(), "surrogate"), "not prepared; run: rosrun")) << refusal(pipette(), "surrogate");
   Scene rubbing = pipette();
   rubbing.needle.contact = {"sliding", 0.2};
-  EXPECT_TRUE(has(refusal(rubbing, "prepared"), "friction = 0.2")) << refusal(rubbing, "prepared");
+  EXPECT_TRUE(has(refusal(rubbing, "surrogate"), "friction = 0.2")) << refusal(rubbing, "surrogate");
 }
 
 /// An operator who reads "not prepared" would not look for a disk that fails.
@@ -83,12 +83,12 @@ TEST_F(ServeNeedle, DamagedDataAreNamedAndHowToMakeThemAnew) {
   disc.cell.material().model = "linear";
   disc.mesh.size = 20e-6;
   const std::string path = file(disc);
-  smallCell(disc).save(disc, PreparationRange::standard(disc), path);
-  EXPECT_EQ(refusal(disc, "prepared"), "");
+  smallCell(disc).save(disc, SurrogateRange::standard(disc), path);
+  EXPECT_EQ(refusal(disc, "surrogate"), "");
   fs::resize_file(path, fs::file_size(path) - 1);
-  const std::string damaged = "the prepared data are damaged (" + path + ": is damaged: ";
+  const std::string damaged = "the surrogate data are damaged (" + path + ": is damaged: ";
   const std::string call = "run: rosrun cell_microinjection prepare --scene a.yaml";
-  const std::string refused = refusal(disc, "prepared");
+  const std::string refused = refusal(disc, "surrogate");
   EXPECT_TRUE(has(refused, damaged) && has(refused, call)) << refused;
   const ChosenCellModel served = makeCellModel(disc, "auto", {}, "a.yaml");
   EXPECT_FALSE(served.as_required);
@@ -100,20 +100,21 @@ TEST_F(ServeNeedle, WhatIsNoFileOrOfAnotherVersionIsNotCalledUnprepared) {
   const Scene scene = pipette();
   const std::string path = file(scene);
   writeCacheFile(path, "another version", "body");
-  EXPECT_TRUE(has(refusal(scene, "prepared"), path + ": was written by another version")) << refusal(scene, "prepared");
+  EXPECT_TRUE(has(refusal(scene, "surrogate"), path + ": was written by another version"))
+      << refusal(scene, "surrogate");
   fs::remove(path);
   ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);  // nobody writes to it
-  const std::string pipe = refusal(scene, "prepared");
+  const std::string pipe = refusal(scene, "surrogate");
   EXPECT_TRUE(has(pipe, path + ": is not a regular file") && has(pipe, "remove it and run: rosrun")) << pipe;
   fs::remove(path);
   fs::create_symlink(path, path);
-  const std::string loop = refusal(scene, "prepared");
+  const std::string loop = refusal(scene, "surrogate");
   EXPECT_TRUE(has(loop, path + ": cannot be read: ") && has(loop, "run: rosrun")) << loop;
 }
 
 TEST_F(ServeNeedle, DamagedFiguresOfTheLiveModelAreNamed) {
   const Scene scene = pipette();
-  smallCell(scene).save(scene, PreparationRange::standard(scene), file(scene));
+  smallCell(scene).save(scene, SurrogateRange::standard(scene), file(scene));
   saveFigures(scene, {"live", std::numeric_limits<double>::quiet_NaN(), 1e-3});
   const ChosenCellModel served = makeCellModel(scene, "auto", {}, "a.yaml");
   EXPECT_TRUE(has(served.description, "figures of the live model: ") && has(served.description, "is damaged: "))
@@ -132,10 +133,10 @@ TEST_F(ServeNeedle, ATensegrityIsServedLiveWithoutAWarning) {
   EXPECT_TRUE(served.as_required);
   EXPECT_TRUE(has(served.description, "solved live: tensegrity of ")) << served.description;
   EXPECT_FALSE(served.cell->deformedSurface().members.empty());
-  EXPECT_TRUE(has(refusal(scene, "prepared"), "cell/model = tensegrity")) << refusal(scene, "prepared");
+  EXPECT_TRUE(has(refusal(scene, "surrogate"), "cell/model = tensegrity")) << refusal(scene, "surrogate");
 }
 
-/// What has a memory of its own, or rubs, is no prepared cell.
+/// What has a memory of its own, or rubs, is no surrogate cell.
 TEST_F(ServeNeedle, WhatCannotBePreparedIsLive) {
   Scene viscous = pipette();
   viscous.cell.material().viscoelasticity.viscosity = 20;
@@ -182,7 +183,7 @@ class ServeMember : public ServeNeedle {
 TEST_F(ServeMember, ACellOfAFamilyIsServedWithoutPreparation) {
   Scene scene = inside();
   scene.cell.material().young_modulus = 15e3;
-  const ChosenCellModel served = makeCellModel(scene, "prepared", config_, "a.yaml");
+  const ChosenCellModel served = makeCellModel(scene, "surrogate", config_, "a.yaml");
   EXPECT_TRUE(has(served.description, "family homogeneous: tip_radius 0.107 of [0.04, 0.2], ")) << served.description;
   EXPECT_TRUE(has(served.description, "expected force error: median ")) << served.description;
   EXPECT_NE(served.change, nullptr);
@@ -208,13 +209,13 @@ TEST_F(ServeMember, ItsOwnPreparationIsServedWhereItIsMoreExact) {
   const Scene scene = inside();
   SurrogateData own = smallCell(scene);
   own.median_error = own.common_error = 1e-6;
-  own.save(scene, PreparationRange::standard(scene), file(scene));
-  const ChosenCellModel served = makeCellModel(scene, "prepared", config_, "a.yaml");
+  own.save(scene, SurrogateRange::standard(scene), file(scene));
+  const ChosenCellModel served = makeCellModel(scene, "surrogate", config_, "a.yaml");
   EXPECT_TRUE(has(served.description, "from its own preparation")) << served.description;
   EXPECT_NE(served.change, nullptr);
   own.median_error = own.common_error = 0.5;
-  own.save(scene, PreparationRange::standard(scene), file(scene));
-  const ChosenCellModel member = makeCellModel(scene, "prepared", config_, "a.yaml");
+  own.save(scene, SurrogateRange::standard(scene), file(scene));
+  const ChosenCellModel member = makeCellModel(scene, "surrogate", config_, "a.yaml");
   EXPECT_TRUE(has(member.description, "family homogeneous: ")) << member.description;
 }
 
@@ -238,7 +239,7 @@ TEST_F(ServeMember, DamagedDataOfAFamilyAreNamed) {
 }
 
 TEST_F(ServeMember, ChangesWhileItIsServed) {
-  const ChosenCellModel served = makeCellModel(inside(), "prepared", config_, "a.yaml");
+  const ChosenCellModel served = makeCellModel(inside(), "surrogate", config_, "a.yaml");
   ASSERT_NE(served.change, nullptr);
   const std::string text = served.change->change({{"young_modulus", 15e3}, {"diameter", 60e-6}});
   EXPECT_TRUE(has(text, "family homogeneous: tip_radius 0.1 of")) << text;
@@ -254,7 +255,7 @@ TEST_F(ServeMember, ChangesWhileItIsServed) {
 }
 
 TEST_F(ServeMember, ARefusedChangeChangesNothing) {
-  const ChosenCellModel served = makeCellModel(inside(), "prepared", config_, "a.yaml");
+  const ChosenCellModel served = makeCellModel(inside(), "surrogate", config_, "a.yaml");
   const auto refused = [&](const CellParameter& parameter) -> std::string {
     try {
       served.change->change({{"young_modulus", 1e3}, parameter});

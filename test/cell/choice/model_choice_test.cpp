@@ -23,16 +23,16 @@ TEST(ModelChoice, TakesTheCheapestThatMeetsBothRequirements) {
 }
 
 TEST(ModelChoice, SaysWhenNoneMeetsThem) {
-  const ModelFigures live{"live", 1.1, 0.05}, prepared{"prepared", 0.03, 2e-6};
+  const ModelFigures live{"live", 1.1, 0.05}, prepared{"surrogate", 0.03, 2e-6};
   const ModelChoice inexact = chooseModel({0.001, 1000}, {live, prepared});
-  EXPECT_EQ(inexact.name, "prepared");  // quick enough, and nearest
+  EXPECT_EQ(inexact.name, "surrogate");  // quick enough, and nearest
   EXPECT_FALSE(inexact.meets);
   EXPECT_NE(inexact.reason.find("NO model"), std::string::npos);
-  EXPECT_EQ(chooseModel({0.02, 1e7}, {live, prepared}).name, "prepared");  // none is quick enough: the quickest
+  EXPECT_EQ(chooseModel({0.02, 1e7}, {live, prepared}).name, "surrogate");  // none is quick enough: the quickest
   EXPECT_FALSE(chooseModel({0.02, 1000}, {live}).meets);
 }
 
-/// Figures belong to the live cell that they were measured of; the prepared data of all these scenes are the same.
+/// Figures belong to the live cell that they were measured of; the surrogate data of all these scenes are the same.
 TEST(ModelChoice, FiguresAreThoseOfTheLiveCell) {
   const std::string cache = testing::TempDir() + "model_choice_cache";
   std::filesystem::remove_all(cache);
@@ -50,11 +50,11 @@ TEST(ModelChoice, FiguresAreThoseOfTheLiveCell) {
   others[2].mesh.refinement.density *= 1.01;
   others[3].mesh.refinement.zone *= 1.01;
   others[4].cell.material().viscoelasticity.prony = {{0.5, 0.2}};  // of other elements
-  const PreparationRange range = PreparationRange::standard(scene);
+  const SurrogateRange range = SurrogateRange::standard(scene);
   for (const Scene& other : others) {
     EXPECT_FALSE(loadFigures(other, "live"));
-    EXPECT_EQ(preparedFile(scene, Preparation::plan(scene, range)),
-              preparedFile(other, Preparation::plan(other, range)));
+    EXPECT_EQ(surrogateFile(scene, SurrogatePlan::plan(scene, range)),
+              surrogateFile(other, SurrogatePlan::plan(other, range)));
   }
   saveFigures(others[4], {"live", 0.02, 0.1});
   EXPECT_EQ(loadFigures(scene, "live").content->force_error, 0.5);

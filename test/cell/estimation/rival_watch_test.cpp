@@ -22,13 +22,13 @@ Scene homogeneous() {
   return scene;
 }
 
-/// Indents `truth` to `depth` (m), `lateral` (m) beside its axis, as the twin of `believed` sees it at a sensor
+/// Indents `truth` to `depth` (m), `lateral` (m) beside its axis, as the estimator of `estimated` sees it at a sensor
 /// of 2 nN.
-CellEstimate indent(const Scene& truth, const Scene& believed, double depth, bool rivals, double lateral = 0) {
+CellEstimate indent(const Scene& truth, const Scene& estimated, double depth, bool rivals, double lateral = 0) {
   static const auto families = loadFamilies(kFamilies);
   CellEstimator estimator(
-      believed, memberOf(believed), {},
-      rivals ? std::make_shared<const std::vector<RivalCell>>(rivalCells(families, believed)) : nullptr);
+      estimated, memberOf(estimated), {},
+      rivals ? std::make_shared<const std::vector<RivalCell>>(rivalCells(families, estimated)) : nullptr);
   SurrogateContact cell(truth, memberOf(truth));
   std::mt19937 random(1);
   std::normal_distribution<double> normal(0, 2e-9);

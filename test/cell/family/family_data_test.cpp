@@ -193,7 +193,7 @@ TEST_F(FamilyOfSprings, IsReadAsItWasWritten) {
 TEST_F(FamilyOfSprings, FittingAnewNeedsNoNewSolutions) {
   const Family family = homogeneous();
   const Eigen::Vector3d x(1, -1, 1);
-  const Preparation plan = planMember(family, family.member(x));
+  const SurrogatePlan plan = planMember(family, family.member(x));
   std::vector<TrainingResult> results;
   for (const TrainingRay& ray : plan.rays) {
     TrainingResult result;

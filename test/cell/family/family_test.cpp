@@ -69,6 +69,13 @@ TEST(Family, OtherCellsAndTipsAreNoMembers) {
   EXPECT_FALSE(zona.coordinatesOf(scene));
   EXPECT_FALSE(homogeneous.coordinatesOf(cell("mouse_oocyte_layered")));
   EXPECT_FALSE(homogeneous.coordinatesOf(cell("mouse_oocyte_tensegrity")));
+  Scene sticky = cell("mouse_oocyte_pipette");
+  ASSERT_TRUE(homogeneous.coordinatesOf(sticky));
+  sticky.needle.contact.adhesion_energy = 1e-4;
+  sticky.needle.contact.adhesion_range = 0.1e-6;
+  std::string misfit;
+  EXPECT_FALSE(homogeneous.coordinatesOf(sticky, &misfit));
+  EXPECT_NE(misfit.find("adhesion"), std::string::npos) << misfit;
   Scene other = scene;
   other.cell.material().model = "mooney_rivlin";
   EXPECT_FALSE(homogeneous.coordinatesOf(other));
@@ -162,8 +169,8 @@ TEST(Family, BordersAreInsideAndWhatIsPastThemIsNot) {
 
 TEST(Family, AThinnerTipHasASmallerRange) {
   const Family cells = family("homogeneous");
-  const PreparationRange thin = cells.range(cells.member(Eigen::Vector3d(-1, 0, 0)));
-  const PreparationRange thick = cells.range(cells.member(Eigen::Vector3d(1, 0, 0)));
+  const SurrogateRange thin = cells.range(cells.member(Eigen::Vector3d(-1, 0, 0)));
+  const SurrogateRange thick = cells.range(cells.member(Eigen::Vector3d(1, 0, 0)));
   EXPECT_LT(thin.depth, 0.4 * thick.depth);
   EXPECT_NEAR(thin.lateral / thin.depth, thick.lateral / thick.depth, 1e-12);
 }

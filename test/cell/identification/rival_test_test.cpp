@@ -51,14 +51,14 @@ class RivalTest : public testing::Test {
   }
   static FamilyLaw lawOf(const Scene& scene) { return {findFamily(kFamilies, scene), scene, {}}; }
 
-  static RivalComparison compare(const Scene& truth, const Scene& believed, double depth, double noise, unsigned seed,
+  static RivalComparison compare(const Scene& truth, const Scene& estimated, double depth, double noise, unsigned seed,
                                  ShapeFitConfig config = {}) {
     static const auto families = loadFamilies(kFamilies);
-    const FamilyLaw law = lawOf(believed);
+    const FamilyLaw law = lawOf(estimated);
     ShapeFit start;
     start.modulus = kModulus;
     start.contact = 0.3e-6;
-    return compareWithRivals({shapeOf(law), law.error()}, rivalCells(families, believed),
+    return compareWithRivals({shapeOf(law), law.error()}, rivalCells(families, estimated),
                              samplesOf(shapeOf(lawOf(truth)), depth, noise, seed), config, start);
   }
 };

@@ -1,4 +1,4 @@
-// Whatever number a material has: a scene reads it, checks it, and prepared data of another value are of another cell.
+// Whatever number a material has: a scene reads it, checks it, and surrogate data of another value are of another cell.
 
 #include "cell/material/material_parameter.h"
 
@@ -53,7 +53,7 @@ TEST_P(MaterialParameterTest, IsChecked) {
   }
 }
 
-/// Else a cache of prepared data would serve the old material in silence.
+/// Else a cache of surrogate data would serve the old material in silence.
 TEST_P(MaterialParameterTest, MakesAnotherCellOfPreparedData) {
   Scene other = scene_;
   other.cell.layers[1].material.*GetParam().value *= 0.9;

@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "cell/model/online_cell_model.h"
+#include "cell/model/live_cell_model.h"
 #include "cell/model/p1_cell.h"
 #include "cell/model/puncture_drive.h"
 
@@ -53,9 +53,9 @@ TEST(PuncturableCell, ServesALiveCell) {
   Scene scene = sceneOf(PunctureConfig::atForce(0.5e-6));
   scene.cell.material() = {"linear", 17.9e3, 0.45};
   scene.mesh.size = 20e-6;
-  OnlineCellModelConfig config;
+  LiveCellModelConfig config;
   config.fixed_period = true;
-  PuncturableCell cell(scene, std::make_unique<OnlineCellModel>(std::make_shared<const P1Cell>(scene), config));
+  PuncturableCell cell(scene, std::make_unique<LiveCellModel>(std::make_shared<const P1Cell>(scene), config));
   Eigen::Vector3d tip(0, 0, 32e-6);
   double time = 0, largest = 0;
   const auto to = [&](double height) {

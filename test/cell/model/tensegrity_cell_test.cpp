@@ -8,8 +8,8 @@
 
 #include "base/errors.h"
 #include "cell/model/converged_force.h"
-#include "cell/model/online_cell_model.h"
-#include "cell/model/online_fem_cell.h"
+#include "cell/model/live_cell_model.h"
+#include "cell/model/live_fem_cell.h"
 #include "cell/model/p1_cell.h"
 #include "cell/model/scene_texts.h"
 
@@ -71,7 +71,7 @@ TEST(TensegrityScene, ErrorsNameKeyAndWhatIsAllowed) {
 
 TEST(TensegrityScene, IsRefusedByModelsOfTheContinuum) {
   EXPECT_THROW(P1Cell cell(tensegrityScene()), ConfigError);
-  EXPECT_THROW(OnlineFemCell cell(tensegrityScene()), ConfigError);
+  EXPECT_THROW(LiveFemCell cell(tensegrityScene()), ConfigError);
   EXPECT_THROW(ConvergedForce(tensegrityScene(), {}, {}), ConfigError);
   EXPECT_THROW(TensegrityCell cell(parseScene(YAML::Load(kGood), "scene.yaml")), ConfigError);
 }
@@ -105,11 +105,11 @@ TEST(TensegrityCell, NeedleMeetsTheMembraneAnywhere) {
 
 /// In virtual time: a needle on a strut's end, with the tracker that serves every live cell.
 TEST(TensegrityCell, ServesAMovingNeedle) {
-  const auto cell = std::dynamic_pointer_cast<const TensegrityCell>(makeOnlineCell(tensegrityScene()));
+  const auto cell = std::dynamic_pointer_cast<const TensegrityCell>(makeLiveCell(tensegrityScene()));
   ASSERT_TRUE(cell);
-  OnlineCellModelConfig config;
+  LiveCellModelConfig config;
   config.fixed_period = true;
-  OnlineCellModel tracker(cell, config);
+  LiveCellModel tracker(cell, config);
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ(), end = cell->structure().geometry().ends[3];
   double time = 0;
   const auto step = [&](double height) { return tracker.step({end.x(), end.y(), end.z() + height}, up, time += 1e-3); };
@@ -162,9 +162,9 @@ TEST(TensegrityCell, ViscousCablesAreNotStifferBetweenSolutions) {
   const auto path = cell->indentation(cell->patchAt(end, up));
   double solved = 0;
   for (int i = 1; i <= 20; ++i) solved = path->solve({0, 0, -kDeepest * i / 20}, kDeepest / kSpeed / 20).force.z();
-  OnlineCellModelConfig config;
+  LiveCellModelConfig config;
   config.fixed_period = true;
-  OnlineCellModel tracker(cell, config);
+  LiveCellModel tracker(cell, config);
   double largest = 0, last = 0;
   for (int i = 0; 1e-3 * i * kSpeed < 5e-6 + kDeepest; ++i) {
     const TipForce force = tracker.step(end + (5e-6 - 1e-3 * i * kSpeed) * up, up, 1e-3 * i);
@@ -185,7 +185,7 @@ TEST(TensegrityCell, PictureMovesWithTheTip) {
   const ContactPoint place = cell.contactAt({0, 0, 28e-6}, up);
   const auto path = cell.path(place);
   ASSERT_TRUE(path->follow({way, 0, 0.0, 1.0}).converged);
-  const OnlineCell::Surface rest = cell.undeformedSurface();
+  const LiveCell::Surface rest = cell.undeformedSurface();
   const Eigen::VectorXd moved = path->surfaceDisplacement();
   ASSERT_EQ(moved.size(), 3 * static_cast<Eigen::Index>(rest.vertices.size()));
   EXPECT_EQ(cell.onSurface(place.patch).size(), place.patch.vertices.size());

@@ -5,7 +5,7 @@
 namespace microinjection {
 namespace {
 
-const PreparationRange kRange{1.0, 20e-6, 45e-6, 5e-6};
+const SurrogateRange kRange{1.0, 20e-6, 45e-6, 5e-6};
 
 TEST(RangeBorder, ChangesNothingInside) {
   for (const Eigen::Vector3d& u : {Eigen::Vector3d(1e-6, -4e-6, -19e-6), Eigen::Vector3d(0, 0, -1e-9)}) {

@@ -20,8 +20,8 @@ inline Scene pipette() {
 /// A cell with an energy of t^2 alone: isotropic springs in the scaled coordinates.
 inline std::shared_ptr<SurrogateData> springs(const Scene& scene) {
   auto cell = std::make_shared<SurrogateData>();
-  cell->range = PreparationRange::standard(scene);
-  const Preparation plan = Preparation::plan(scene, cell->range);
+  cell->range = SurrogateRange::standard(scene);
+  const SurrogatePlan plan = SurrogatePlan::plan(scene, cell->range);
   cell->energy = EnergyExpansion(plan.scales, {});
   Eigen::VectorXd coefficients = Eigen::VectorXd::Zero(cell->energy.size());
   coefficients[0] = 1;
@@ -32,7 +32,7 @@ inline std::shared_ptr<SurrogateData> springs(const Scene& scene) {
 /// The same with a force field that differs from the energy's: more sideways by `more`, and so no gradient.
 inline std::shared_ptr<SurrogateData> fieldOfSprings(const Scene& scene, double more) {
   auto cell = springs(scene);
-  const Preparation plan = Preparation::plan(scene, cell->range);
+  const SurrogatePlan plan = SurrogatePlan::plan(scene, cell->range);
   std::vector<TrainingSample> samples;
   for (double angle : {0.0, 0.3, 0.6, 0.9}) {
     EnergyExpansion::Local local;

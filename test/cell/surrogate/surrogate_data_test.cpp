@@ -17,9 +17,7 @@ class StoredCell : public testing::Test {
   void SetUp() override { cell_.save(scene_, cell_.range, path_); }
   void TearDown() override { std::filesystem::remove(path_); }
 
-  CacheRead<SurrogateData> load() const {
-    return SurrogateData::load(scene_, PreparationRange::standard(scene_), path_);
-  }
+  CacheRead<SurrogateData> load() const { return SurrogateData::load(scene_, SurrogateRange::standard(scene_), path_); }
 
   const Scene scene_ = pipette();
   const SurrogateData cell_ = smallCell(scene_);
@@ -63,7 +61,7 @@ TEST_F(StoredCell, ServesASimilarScene) {
   similar.holding_pipette.contact_radius *= kLonger;
   similar.needle.tip.radius *= kLonger;
   const CacheRead<SurrogateData> own = load();
-  const auto other = SurrogateData::load(similar, PreparationRange::standard(similar), path_);
+  const auto other = SurrogateData::load(similar, SurrogateRange::standard(similar), path_);
   ASSERT_TRUE(own && other) << own.reason << other.reason;
   const Eigen::Vector3d u(1e-6, 0.5e-6, -6e-6);
   const auto force = [](const SurrogateData& cell, const Eigen::Vector3d& displacement) {
@@ -82,7 +80,7 @@ TEST_F(StoredCell, ServesASimilarScene) {
   EXPECT_TRUE(displaced[1].isApprox(kLonger * displaced[0], 1e-6));
   Scene thinner = similar;
   thinner.needle.tip.radius *= 0.99;
-  EXPECT_EQ(SurrogateData::load(thinner, PreparationRange::standard(thinner), path_).state, CacheState::kOther);
+  EXPECT_EQ(SurrogateData::load(thinner, SurrogateRange::standard(thinner), path_).state, CacheState::kOther);
 }
 
 /// What no checksum can tell: a program that stored nonsense. A force that is no number must not reach a hand.
@@ -120,7 +118,7 @@ TEST_F(StoredCell, WhatCannotBeIsDamagedWhateverItsChecksum) {
 }
 
 TEST_F(StoredCell, OfAnotherVersionIsNotCalledDamaged) {
-  writeCacheFile(path_, "prepared cell 0", "body");
+  writeCacheFile(path_, "surrogate cell 0", "body");
   EXPECT_EQ(load().state, CacheState::kOther);
 }
 

@@ -12,7 +12,7 @@ namespace microinjection {
 namespace {
 
 /// Results of a plan whose paths all reach their targets.
-std::vector<TrainingResult> completeResults(const Preparation& plan) {
+std::vector<TrainingResult> completeResults(const SurrogatePlan& plan) {
   std::vector<TrainingResult> results;
   for (const TrainingRay& ray : plan.rays) {
     TrainingSample sample;
@@ -30,12 +30,12 @@ void endAt(double share, const TrainingRay& ray, TrainingResult& result) {
 class ReachedRange : public testing::Test {
  protected:
   const Scene scene_ = pipette();
-  const Preparation plan_ = Preparation::plan(scene_, PreparationRange::standard(scene_));
+  const SurrogatePlan plan_ = SurrogatePlan::plan(scene_, SurrogateRange::standard(scene_));
   std::vector<TrainingResult> results_ = completeResults(plan_);
 };
 
 TEST_F(ReachedRange, IsThatOfThePlanWhenEveryPathIsComplete) {
-  const PreparationRange range = reachedRange(plan_, results_);
+  const SurrogateRange range = reachedRange(plan_, results_);
   EXPECT_EQ(range.depth, plan_.range.depth);
   EXPECT_EQ(range.lateral, plan_.range.lateral);
 }
@@ -47,7 +47,7 @@ TEST_F(ReachedRange, ShrinksToThePathThatEndedFirst) {
     if (plan_.rays[i].level == kCoarseLevel && ended < 2) endAt(0.6 - 0.1 * ended++, plan_.rays[i], results_[i]);
   }
   ASSERT_EQ(ended, 2u);
-  const PreparationRange range = reachedRange(plan_, results_);
+  const SurrogateRange range = reachedRange(plan_, results_);
   EXPECT_NEAR(range.depth, 0.5 * plan_.range.depth, 1e-12 * plan_.range.depth);
   EXPECT_NEAR(range.lateral, 0.5 * plan_.range.lateral, 1e-12 * plan_.range.lateral);
   EXPECT_EQ(range.angle, plan_.range.angle);

@@ -1,4 +1,4 @@
-// The online twin learns from no reading that it cannot trust, says why, and has nothing served that it has not
+// The cell estimator learns from no reading that it cannot trust, says why, and has nothing served that it has not
 // learned.
 
 #include <gtest/gtest.h>
@@ -67,7 +67,7 @@ class CellEstimatorTrustTest : public testing::Test {
     EXPECT_NE(estimate().held.find(reason), std::string::npos) << estimate().held;
   }
 
-  VirtualSession session_{{"cell:=mouse_oocyte_pipette", "twin:=true"}};
+  VirtualSession session_{{"cell:=mouse_oocyte_pipette", "estimator:=true"}};
   ScriptedNeedle needle_{session_, kSurface + 20e-6};
   unsigned punctures_ = 0;
   std::function<double(double)> force_at_ = [](double depth) { return 0.05 * depth; };  ///< N, of a depth (m)

@@ -9,8 +9,8 @@
 
 #include "cell_microinjection/OperatingState.h"
 #include "cell_microinjection/StringStamped.h"
+#include "hardware/manipulator/manipulator_geometry.h"
 #include "nodes/bus/bus.h"
-#include "rig/manipulator/manipulator_geometry.h"
 
 namespace microinjection {
 

@@ -37,7 +37,7 @@ class DeadByHand : public testing::TestWithParam<HandFault> {
 };
 
 TEST_P(DeadByHand, Hand) {
-  strike("operator");
+  strike("virtual_hand");
   expectNeedleRests(0);
   expectForceEnds(HandSession::kInputs, HandSession::sooner(GetParam().fault));
 }

@@ -48,7 +48,7 @@ TEST_P(DeadOverLink, Bridge) {
 }
 
 TEST_P(DeadOverLink, Hand) {
-  strike("operator");
+  strike("virtual_hand");
   expectNeedleRests(HandSession::kInputs);
   expectForceEnds(HandSession::kInputs, HandSession::sooner(GetParam()));
 }

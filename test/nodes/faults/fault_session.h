@@ -144,7 +144,7 @@ class FaultSession {
           force(bus, "haptic/servo_cf"),
           injector(bus, "injector/state"),
           injection(bus, "controller/injection_state"),
-          phase(bus, "operator/phase") {}
+          phase(bus, "virtual_hand/phase") {}
     Probe<geometry_msgs::PoseStamped> needle, setpoint, hand, target;
     Probe<geometry_msgs::WrenchStamped> force;
     Probe<cell_microinjection::InjectorState> injector;

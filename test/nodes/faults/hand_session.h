@@ -21,7 +21,7 @@ class HandSession : public FaultSession {
   explicit HandSession(const Options& options) : FaultSession(overrides(options)) {
     const std::string motion = session().folder() / "motion.csv";
     writeMotion(motion);
-    session().add("operator", "{start_delay: 0.2, motion: " + motion + "}");
+    session().add("virtual_hand", "{start_delay: 0.2, motion: " + motion + "}");
     session().start();
   }
 

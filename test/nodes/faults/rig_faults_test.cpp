@@ -9,8 +9,8 @@
 #include "cell_microinjection/ManipulatorAbilities.h"
 #include "cell_microinjection/OperatingState.h"
 #include "faulty_topic.h"
+#include "hardware/devices/driver_registry.h"
 #include "led_hand.h"
-#include "rig/devices/rig_registry.h"
 
 namespace microinjection {
 namespace {
@@ -137,7 +137,7 @@ TEST_P(RigFaultsTest, MoveTheNeedleNoFurtherAndAreSaid) {
 
 std::vector<FaultyDevice> allFaultyRigs() {
   std::vector<std::string> names{"sim", "external"};
-  for (const Rig& rig : rigs()) names.push_back("emulated_" + rig.name);
+  for (const DriverEntry& rig : driverEntries()) names.push_back("emulated_" + rig.name);
   std::vector<FaultyDevice> all;
   for (const std::string& name : names) {
     for (int fault = 0; fault <= static_cast<int>(DeviceFault::kLine); ++fault) {

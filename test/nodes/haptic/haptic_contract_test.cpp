@@ -38,7 +38,7 @@ class HapticContractTest : public testing::TestWithParam<std::string> {
     parameters["start_delay"] = 0.2;
     parameters["motion"] = testFile(isStick() ? "scenes/whole_injection_stick.csv" : "scenes/whole_injection.csv");
     session_.executive().add("emulated_haptic", makeNode<EmulatedHapticNode>(), parameters);
-    hear<StringStamped>("operator/phase");
+    hear<StringStamped>("virtual_hand/phase");
     hear<InjectionStatus>("controller/injection_state");
     hear<geometry_msgs::PoseStamped>("needle/measured_cp");
     hear<geometry_msgs::WrenchStamped>("cell/predicted_cf");
@@ -80,7 +80,7 @@ class HapticContractTest : public testing::TestWithParam<std::string> {
     return std::find(all.begin(), all.end(), state) != all.end();
   }
   std::string phase() {
-    const auto* told = hear<StringStamped>("operator/phase").newest();
+    const auto* told = hear<StringStamped>("virtual_hand/phase").newest();
     return told ? told->string : "";
   }
   /// To the begin of a phase of the hand's motion.

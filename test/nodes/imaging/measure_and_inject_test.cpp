@@ -20,12 +20,12 @@ namespace microinjection {
 namespace {
 
 /// The session believes in a cell of 56 um on the needle's axis; one of 62 um beside it is under the needle and in the
-/// image. Parameter: it is stiffer, too, which the online twin finds out by a touch before the injection.
+/// image. Parameter: it is stiffer, too, which the cell estimator finds out by a touch before the injection.
 class MeasureAndInjectTest : public testing::TestWithParam<bool> {
  protected:
   static constexpr double kDiameter = 62e-6, kBeside = 6e-6;  // m, of the true cell; from the needle's axis
   static constexpr double kPuncture = 1.5e-6;                 // N, of its zona
-  static constexpr double kTrueModulus = 30e3;                // Pa, with the twin; the session believes in 17.9e3
+  static constexpr double kTrueModulus = 30e3;                // Pa, with the estimator; the session believes in 17.9e3
   using Row = std::map<std::string, std::string>;
 
   MeasureAndInjectTest() {
@@ -40,7 +40,8 @@ class MeasureAndInjectTest : public testing::TestWithParam<bool> {
     session_.run(0.2);
   }
 
-  /// With the twin a sensor with little noise and no drift: what noise costs the twin is measured by ./dev bench twin.
+  /// With the estimator a sensor with little noise and no drift: what noise costs the estimator is measured by ./dev
+  /// bench estimator.
   static std::string overrides(const SmallCamera& camera) {
     const std::string sensor =
         ", force_sensor: {simulated: {axial_noise_density: 1.4e-12, axial_random_walk: 0.0, axial_drift_rate: 0.0, "
@@ -156,7 +157,7 @@ class MeasureAndInjectTest : public testing::TestWithParam<bool> {
     EXPECT_TRUE(found != row.end() && !found->second.empty()) << title;
     return found != row.end() && !found->second.empty() ? std::stod(found->second) : NAN;
   }
-  /// A row for each cell that was touched; with the twin twice the same one.
+  /// A row for each cell that was touched; with the estimator twice the same one.
   void expectNotebook(const cell_microinjection::InjectResult& result) const {
     const std::vector<Row> rows = notebookRows();
     ASSERT_EQ(rows.size(), GetParam() ? 2u : 1u);
@@ -175,7 +176,7 @@ class MeasureAndInjectTest : public testing::TestWithParam<bool> {
 
   SmallCamera camera_{480, 520, {239.5, 359.5}};
   VirtualSession session_{{"cell:=mouse_oocyte_injection", "hidden:=" + testFile("scenes/larger_oocyte.yaml"),
-                           "camera.source:=sim", std::string("twin:=") + (GetParam() ? "true" : "false"),
+                           "camera.source:=sim", std::string("estimator:=") + (GetParam() ? "true" : "false"),
                            "hand.device:=none", "injection.mode:=automatic", "injection.start_when_enabled:=false",
                            "display.markers:=false", overrides(camera_)}};
   std::string notebook_ = session_.folder() / "notebook.csv";
@@ -197,8 +198,8 @@ TEST_P(MeasureAndInjectTest, IsMeasuredServedAndInjected) {
   expectNotebook(result);
 }
 
-INSTANTIATE_TEST_SUITE_P(Twin, MeasureAndInjectTest, testing::Bool(),
-                         [](const auto& of) { return of.param ? "WithTwin" : "WithoutTwin"; });
+INSTANTIATE_TEST_SUITE_P(Estimator, MeasureAndInjectTest, testing::Bool(),
+                         [](const auto& of) { return of.param ? "WithEstimator" : "WithoutEstimator"; });
 
 }  // namespace
 }  // namespace microinjection

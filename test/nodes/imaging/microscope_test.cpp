@@ -47,8 +47,9 @@ class MicroscopeTest : public testing::Test {
     return largest;
   }
   double focus() { return session_.world().hear<sensor_msgs::JointState>("/focus/measured_js").newest()->position[0]; }
-  void moveFocus(const std::vector<double>& position) {
+  void moveFocus(const std::vector<double>& position, double ahead = 0) {
     sensor_msgs::JointState message;
+    if (ahead > 0) message.header.stamp = session_.now() + ros::Duration(ahead);
     message.name = {"focus"};
     message.position = position;
     session_.world().say("/focus/move_jp", message);
@@ -114,6 +115,9 @@ TEST_F(MicroscopeTest, FocusMovesAndBlurs) {
     session_.run(0.7);
     EXPECT_NEAR(focus(), 20e-6, 1e-12);
   }
+  moveFocus({0}, 60);  // of a machine whose clock is wrong
+  session_.run(0.7);
+  EXPECT_NEAR(focus(), 20e-6, 1e-12);
   moveFocus({0});
   EXPECT_TRUE(session_.until([&] { return focus() == 0; }, 1));
 }

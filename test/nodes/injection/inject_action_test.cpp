@@ -143,7 +143,7 @@ TEST_F(InjectActionTest, CancelledWhileItIndentsItWithdraws) {
   EXPECT_FALSE(chain_.cell().punctured);
 }
 
-/// The twin expects a puncture beyond the limit of the force.
+/// The estimator expects a puncture beyond the limit of the force.
 class ExpectedPunctureTest : public InjectActionTest {
  protected:
   void expectPuncture(const std::string& verdict, double age) {
@@ -171,7 +171,7 @@ class ExpectedPunctureTest : public InjectActionTest {
   double age_ = 0;  // s
 };
 
-TEST_F(ExpectedPunctureTest, OfATwinThatIsContradictedOrDeadCountsForNothing) {
+TEST_F(ExpectedPunctureTest, OfAnEstimatorThatIsContradictedOrDeadCountsForNothing) {
   for (const auto& [verdict, age] : {std::pair("inconsistent", 0), {"converged", 1}, {"converged", -1}}) {
     SCOPED_TRACE(verdict + std::string(" ") + std::to_string(age));
     expectPuncture(verdict, age);

@@ -29,7 +29,7 @@ TEST_P(NoisyForceTest, DoesNotPumpTheNeedle) {
   const std::string motion = session.folder() / "rest.yaml";
   std::ofstream(motion) << "tremor: {rms: 30.0e-6, seed: 1}\npath: [{phase: rest, duration: 40, z: 0}]\n";
   auto& needle = session.world().hear<geometry_msgs::PoseStamped>("needle/measured_cp");
-  session.add("operator", "{motion: " + motion + "}");
+  session.add("virtual_hand", "{motion: " + motion + "}");
   session.start();
   session.run(1);
   const Eigen::Vector3d start = toVector(needle.newest()->pose.position);

@@ -5,9 +5,9 @@
 #include <ostream>
 #include <tuple>
 
+#include "hardware/devices/driver_registry.h"
+#include "hardware/injector/injector_registry.h"
 #include "nodes/injection/injection_chain.h"
-#include "rig/devices/rig_registry.h"
-#include "rig/injector/injector_registry.h"
 
 namespace microinjection {
 namespace {
@@ -74,7 +74,7 @@ TEST_P(WholeInjectionTest, GoesThroughTheZonaInjectsAndComesOut) {
 /// each that is emulated.
 std::vector<Devices> allDevices() {
   std::vector<Devices> all{{"sim", "simulated"}};
-  for (const Rig& rig : rigs()) all.push_back({"emulated_" + rig.name, "simulated"});
+  for (const DriverEntry& rig : driverEntries()) all.push_back({"emulated_" + rig.name, "simulated"});
   all.push_back({"external", "simulated"});
   for (const Injector& injector : injectors()) all.push_back({"sim", "emulated_" + injector.name});
   return all;

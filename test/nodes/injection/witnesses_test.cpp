@@ -176,7 +176,7 @@ TEST_F(WitnessesTest, NewsOfAChangedCellKeepItsFallFromBeingAPuncture) {
   EXPECT_EQ(chain.status().state, "indent");
 }
 
-/// A twin serves what it has learned, again and again: that must not hide a puncture.
+/// An estimator serves what it has learned, again and again: that must not hide a puncture.
 TEST_F(WitnessesTest, NewsOfSmallChangesHideNoPuncture) {
   InjectionChain chain;
   double modulus = 17.9e3;

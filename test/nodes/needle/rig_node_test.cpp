@@ -1,13 +1,13 @@
-// What any rig behind the /needle topics must keep to, and how its node tells it. test/rig/devices/contract_test.cpp
-// asks the same of the drivers, and more of their motion.
+// What any rig behind the /needle topics must keep to, and how its node tells it.
+// test/hardware/devices/contract_test.cpp asks the same of the drivers, and more of their motion.
 
 #include <gtest/gtest.h>
 
 #include <map>
 #include <vector>
 
+#include "hardware/devices/driver_registry.h"
 #include "needle_bench.h"
-#include "rig/devices/rig_registry.h"
 
 namespace microinjection {
 namespace {
@@ -21,7 +21,7 @@ struct RigSet {
 
 std::vector<RigSet> rigSets() {
   std::vector<RigSet> sets{{"sim", "sim"}};
-  for (const Rig& rig : rigs()) sets.push_back({rig.name, "emulated_" + rig.name});
+  for (const DriverEntry& rig : driverEntries()) sets.push_back({rig.name, "emulated_" + rig.name});
   // A USB adapter whose latency timer is as delivered, and three devices with an axis each on one line.
   sets.push_back({"scientifica_slow", "emulated_scientifica", "{emulator: {latency: 0.018}}"});
   sets.push_back({"zaber_chain", "emulated_zaber",

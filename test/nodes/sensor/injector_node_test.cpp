@@ -1,5 +1,5 @@
 // Any injector as a session has it: its file over config/injector.yaml, and the device at the other end of the line
-// emulated as manuals have it. test/rig/injector/injector_contract_test.cpp asks more of the drivers.
+// emulated as manuals have it. test/hardware/injector/injector_contract_test.cpp asks more of the drivers.
 
 #include <gtest/gtest.h>
 #include <std_srvs/Trigger.h>

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "hardware/serial/pseudo_terminal.h"
 #include "nodes/needle/force_sources.h"
-#include "rig/serial/pseudo_terminal.h"
 #include "virtual_session.h"
 
 namespace microinjection {

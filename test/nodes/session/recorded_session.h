@@ -28,7 +28,7 @@ inline const std::vector<Waypoint> kHandPath = {
     {"puncture", 0.5, -24.8e-3, false}, {"inject", 0.6, -24.8e-3, false},   {"retract", 1.2, -10.8e-3, false},
     {"retract", 1.0, 0, false}};
 
-/// A motion for the node operator. @returns the path
+/// A motion for the node virtual_hand. @returns the path
 inline std::string writeMotion(const std::filesystem::path& path, const std::vector<Waypoint>& way) {
   std::ofstream out(path);
   out << "path:\n";

@@ -79,7 +79,7 @@ TEST_F(RecorderTest, KilledItLeavesTheRowsUntilThen) {
 TEST_F(RecorderTest, AFileThatCannotBeWrittenHidesNoOther) {
   for (const char* name : {"summary.yaml", "training.yaml"}) std::filesystem::create_directories(out_ / name);
   YAML::Node training = YAML::LoadFile(MICROINJECTION_SOURCE_DIR "/config/training.yaml");
-  training["operator"] = "ada";
+  training["trainee"] = "ada";
   training["history"] = (out_ / "history.csv").string();
   YAML::Node changes;
   changes["training"] = training;

@@ -143,7 +143,7 @@ TEST_F(WholeSessionTest, TheHandInjects) {
 /// The measures of the score, once more from the table; score and history.
 TEST_F(WholeSessionTest, TheSessionIsScored) {
   const YAML::Node told = YAML::Load(recorded_->file("second", "training.yaml"));
-  EXPECT_EQ(told["operator"].as<std::string>(), "ada");
+  EXPECT_EQ(told["trainee"].as<std::string>(), "ada");
   EXPECT_EQ(told["outcome"].as<std::string>(), "complete");
   EXPECT_EQ(told["reason"].as<std::string>(), "");
   EXPECT_EQ(told["moments_left_out"].as<int>(), 0);
@@ -151,7 +151,7 @@ TEST_F(WholeSessionTest, TheSessionIsScored) {
   const std::vector<CsvRows::Row> history = CsvRows(readFile(recorded_->folders.path() / "history.csv")).all();
   ASSERT_EQ(history.size(), 2u);
   EXPECT_EQ(history[0], history[1]);
-  EXPECT_EQ(history[1].at("operator"), "ada");
+  EXPECT_EQ(history[1].at("trainee"), "ada");
   double points = 0;
   for (const RecordedMeasure& measure : trainingMeasures(rows())) {
     SCOPED_TRACE(measure.name);

@@ -110,6 +110,28 @@ TEST(Headline, SaysWhatHoldsTheNeedle) {
   EXPECT_EQ(headline(session).light, Light::kYellow);
 }
 
+/// Where the needle is led, an alarm elsewhere has its own lamp, and the line says what happens.
+TEST(Headline, SaysWhatToMendFirstWhereTheNeedleIsNotLed) {
+  SessionView session;
+  session.operating = OperatingState::kDisabled;
+  session.injection = InjectionState::kIdle;
+  const std::string disabled = headline(session).text;
+  session.hindrance = HindranceView{"micromanipulator", "no reply: is it on?", "Look at the cable.", false};
+  EXPECT_EQ(headline(session).text, disabled + "; micromanipulator: no reply: is it on? - Look at the cable.");
+  EXPECT_EQ(headline(session).light, Light::kGrey) << "who has disabled it may wait with a warning";
+  session.hindrance->is_error = true;
+  EXPECT_EQ(headline(session).light, Light::kYellow);
+  session.operating = OperatingState::kEnabled;
+  session.hold_reason = "no valid needle position";
+  session.hindrance = HindranceView{"injection_controller", session.hold_reason, "Start the driver.", false};
+  EXPECT_EQ(headline(session).text, "ENABLED: held: no valid needle position - Start the driver.");
+  session.hold_reason.clear();
+  session.settings.mode = "manual";
+  EXPECT_EQ(headline(session).text, "ENABLED: follows the hand");
+  session.operating.reset();
+  EXPECT_EQ(headline(session).light, Light::kRed);
+}
+
 TEST(Headline, IsYellowWhileAGuardOrAMissingInputHoldsTheNeedle) {
   SessionView session;
   session.operating = OperatingState::kEnabled;

@@ -35,7 +35,7 @@ TEST_F(InjectionNotebook, HasALineForEachEntryBelowTheHeader) {
   NotebookEntry entry;
   entry.time = "2026-11-25T10:00:00";
   entry.cell = "mouse_oocyte";
-  entry.modulus = NotebookEntry::Interval{17900, 17000, 18800};
+  entry.modulus = NotebookEntry::Estimate{17900, 17000, 18800};
   entry.outcome = "injected";
   appendToNotebook(path_, entry);
   entry.punctures = 1;
@@ -50,7 +50,7 @@ TEST_F(InjectionNotebook, HasALineForEachEntryBelowTheHeader) {
 TEST_F(InjectionNotebook, EveryLineHasTheColumnsOfTheHeader) {
   NotebookEntry entry;
   entry.diameter = 56e-6;
-  entry.expected_depth = entry.expected_force = NotebookEntry::Interval{1, 2, 3};
+  entry.expected_depth = entry.expected_force = NotebookEntry::Estimate{1, 2, 3};
   const std::string line = toLine(entry), header = kNotebookHeader;
   EXPECT_EQ(std::count(line.begin(), line.end(), ','), std::count(header.begin(), header.end(), ','));
 }

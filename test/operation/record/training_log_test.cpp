@@ -19,7 +19,7 @@ class TrainingLogTest : public testing::Test {
  protected:
   TrainingLogTest() {
     std::filesystem::remove_all(folder_);
-    config_.operator_name = "ada";
+    config_.trainee = "ada";
     config_.history = folder_ + "/all/history.csv";
     config_.task.volume = 5e-15;
     config_.punctures = "felt";
@@ -71,7 +71,7 @@ TEST_F(TrainingLogTest, ASessionIsWrittenAndEntered) {
   EXPECT_TRUE(result.in_history);
   EXPECT_DOUBLE_EQ(result.score.score(), 100);
   const YAML::Node yaml = YAML::LoadFile(folder_ + "/training.yaml");
-  EXPECT_EQ(yaml["operator"].as<std::string>(), "ada");
+  EXPECT_EQ(yaml["trainee"].as<std::string>(), "ada");
   EXPECT_EQ(yaml["outcome"].as<std::string>(), "complete");
   EXPECT_EQ(yaml["score"].as<double>(), 100);
   EXPECT_DOUBLE_EQ(yaml["measures"]["peak_force_N"]["value"].as<double>(), 1e-6);
@@ -159,18 +159,18 @@ TEST_F(TrainingLogTest, RowsWithoutNeedleOrForceAreGaps) {
 
 TEST(TrainingConfigTest, TheSuppliedFileIsGoodAndMistakesAreNamed) {
   YAML::Node map = loadYamlMap(std::string(MICROINJECTION_SOURCE_DIR) + "/config/training.yaml");
-  map["operator"] = "ada";
+  map["trainee"] = "ada";
   map["history"] = "/records/history.csv";
   ConfigReader good(map, "training");
   EXPECT_EQ(TrainingConfig::read(good).task.volume, 4.8e-15);
   EXPECT_NO_THROW(good.finish());
-  ConfigReader bad(YAML::Load("{operator: 'a,b', force: none, task: {tme: 3, punctures: -1}}"), "training");
+  ConfigReader bad(YAML::Load("{trainee: 'a,b', force: none, task: {tme: 3, punctures: -1}}"), "training");
   TrainingConfig::read(bad);
   try {
     bad.finish();
     FAIL();
   } catch (const ConfigError& error) {
-    for (const char* part : {"operator", "history", "force = none", "task/tme", "task/punctures = -1"}) {
+    for (const char* part : {"trainee", "history", "force = none", "task/tme", "task/punctures = -1"}) {
       EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << part << " in " << error.what();
     }
   }

@@ -14,7 +14,7 @@ TEST(CoreSharpness, HasItsPeakInTheTipsFocus) {
   for (const char* look : {"bright_field", "phase", "dic"}) {
     for (const double depth : {0.0, 2.4e-6}) {
       MicroscopeConfig config;
-      config.look.kind = look;
+      config.contrast.mode = contrastModeOf(look);
       Microscope microscope(config);
       MicroscopeScene scene;
       InjectionPipette needle;

@@ -15,7 +15,7 @@ class FocusRig {
   explicit FocusRig(double tip, double start = 0) : tip_(tip), position_(start), goal_(start) {}
 
   FocusSearch::Input input() const {
-    return {now_, known_ ? std::optional(position_) : std::nullopt, reading_, blind_};
+    return {now_, known_ ? std::optional(position_) : std::nullopt, reading_, image_problem_};
   }
   void command(double goal) { goal_ = goal; }
   void step() {
@@ -40,7 +40,7 @@ class FocusRig {
   double tip_, position_, goal_, lowest_ = 0, highest_ = 0;
   double contrast_ = 100, late_ = 0, now_ = 100, exposed_ = 0;
   bool stuck_ = false, known_ = true, frozen_ = false;
-  std::string blind_;
+  std::string image_problem_;
   std::optional<FocusSearch::Reading> reading_;
 };
 
@@ -106,7 +106,7 @@ TEST(FocusSearch, RefusesOldAndMissingImages) {
   EXPECT_NE(second.failure().find("the images are stale"), std::string::npos) << second.failure();
   FocusRig blind(0);
   blind.frozen_ = true;
-  blind.blind_ = "it is black";
+  blind.image_problem_ = "it is black";
   FocusSearch third({}, 0);
   blind.run(third);
   EXPECT_NE(third.failure().find("it is black"), std::string::npos) << third.failure();

@@ -104,15 +104,16 @@ class RenderedApproach {
     scene.injection = needle;
     const SpecimenView& view = tracker_.next(Frame(microscope_.render(scene, 0, ++seed_)));
     exposed_ = now_;
-    sight_.reset();
-    blind_ = view.cell.finding.reason + view.injection.finding.reason + view.indentation.displacement.finding.reason;
+    observation_.reset();
+    image_problem_ =
+        view.cell.finding.reason + view.injection.finding.reason + view.indentation.displacement.finding.reason;
     const BorderDisplacement& seen = view.indentation.displacement;
     if (!seen.finding.isFound()) return;
     const bool certain = view.cell.finding.isFound() && view.injection.finding.isFound();
-    sight_ = TouchSearch::Sight{now_, seen.depth, seen.deviation, seen.gap, certain};
+    observation_ = TouchSearch::Observation{now_, seen.depth, seen.deviation, seen.gap, certain};
   }
 
-  TouchSearch::Input input() const { return {now_, position_, rested_, sight_, blind_, std::nullopt}; }
+  TouchSearch::Input input() const { return {now_, position_, rested_, observation_, image_problem_, std::nullopt}; }
 
   Place place_;
   SpecimenTracker tracker_;
@@ -120,8 +121,8 @@ class RenderedApproach {
   std::uint64_t seed_;
   double surface_ = 0, now_ = 10, rested_ = 9, exposed_ = 0;
   Eigen::Vector3d position_;
-  std::optional<TouchSearch::Sight> sight_;
-  std::string blind_;
+  std::optional<TouchSearch::Observation> observation_;
+  std::string image_problem_;
 };
 
 class RenderedTouch : public testing::TestWithParam<Place> {};

@@ -17,7 +17,7 @@ class TouchRig {
   explicit TouchRig(double gap) : gap_(gap) {}
 
   TouchSearch::Input input() const {
-    TouchSearch::Input input{now_, position_, rested_, sight_, blind_, force_, force_stamp_};
+    TouchSearch::Input input{now_, position_, rested_, observation_, image_problem_, force_, force_stamp_};
     if (!known_) input.position.reset();
     return input;
   }
@@ -37,9 +37,9 @@ class TouchRig {
       if (frozen_ || now_ - exposed_ < 0.033) continue;
       exposed_ = now_;
       const double above = position_.z() - start_.z() + gap_ + seen_lower_;
-      sight_ = TouchSearch::Sight{now_ - late_, kPixels * give_ * depth + noise_(random_), kNoise,
-                                  kPixels * above + noise_(random_), above > certain_from_};
-      if (!sight_->certain) sight_->gap += astray_;
+      observation_ = TouchSearch::Observation{now_ - late_, kPixels * give_ * depth + noise_(random_), kNoise,
+                                              kPixels * above + noise_(random_), above > certain_from_};
+      if (!observation_->certain) observation_->gap += astray_;
     }
   }
 
@@ -49,8 +49,8 @@ class TouchRig {
   bool known_ = true, stuck_ = false, frozen_ = false;
   std::optional<double> force_ = kOffset;
   double force_stamp_ = 10, force_period_ = 0;  ///< s
-  std::optional<TouchSearch::Sight> sight_;
-  std::string blind_;
+  std::optional<TouchSearch::Observation> observation_;
+  std::string image_problem_;
 
  private:
   static constexpr double kPixels = 4e6, kNoise = 0.2;        // px/m, px
@@ -203,13 +203,13 @@ TEST(TouchSearch, EndsWithoutFreshImages) {
   TouchRig late(4e-6), frozen(4e-6), blind(4e-6);
   late.late_ = 100;
   frozen.frozen_ = blind.frozen_ = true;
-  frozen.sight_ = TouchSearch::Sight{9.9, 0, 0.2, 16};
-  blind.blind_ = "the cell is not seen";
+  frozen.observation_ = TouchSearch::Observation{9.9, 0, 0.2, 16};
+  blind.image_problem_ = "the cell is not seen";
   for (TouchRig* rig : {&late, &frozen, &blind}) {
     TouchSearch search = searchOf(*rig);
     rig->run(search);
     EXPECT_NE(search.failure().find("no fresh image"), std::string::npos) << search.failure();
-    EXPECT_NE(search.failure().find(rig->blind_), std::string::npos) << search.failure();
+    EXPECT_NE(search.failure().find(rig->image_problem_), std::string::npos) << search.failure();
     EXPECT_EQ(rig->position_, rig->start_);
   }
 }
@@ -234,11 +234,12 @@ TEST(TouchSearch, EndsWhenTheNeedleDoesNotFollow) {
 
 TEST(TouchSearch, RefusesWhatIsNotFinite) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  for (const TouchSearch::Sight& sight : {TouchSearch::Sight{11, kNan, 0.2, 16}, TouchSearch::Sight{11, 0, kNan, 16},
-                                          TouchSearch::Sight{11, 0, 0.2, kNan}}) {
+  for (const TouchSearch::Observation& observation :
+       {TouchSearch::Observation{11, kNan, 0.2, 16}, TouchSearch::Observation{11, 0, kNan, 16},
+        TouchSearch::Observation{11, 0, 0.2, kNan}}) {
     TouchRig rig(4e-6);
     rig.frozen_ = true;
-    rig.sight_ = sight;
+    rig.observation_ = observation;
     TouchSearch search = searchOf(rig);
     rig.run(search);
     EXPECT_NE(search.failure().find("not finite"), std::string::npos) << search.failure();

@@ -32,8 +32,8 @@ TEST(MicroscopeConfig, ItsFileHasTheDefaults) {
   EXPECT_EQ(config.camera.pixel_size, built_in.camera.pixel_size);
   EXPECT_EQ(config.camera.origin, built_in.camera.origin);
   EXPECT_EQ(config.objective.condenser_aperture, built_in.objective.condenser_aperture);
-  EXPECT_EQ(config.look.kind, built_in.look.kind);
-  EXPECT_EQ(config.look.shear, built_in.look.shear);
+  EXPECT_EQ(config.contrast.mode, built_in.contrast.mode);
+  EXPECT_EQ(config.contrast.shear, built_in.contrast.shear);
   EXPECT_EQ(config.illumination.gradient, built_in.illumination.gradient);
   EXPECT_EQ(config.illumination.mottle, built_in.illumination.mottle);
   EXPECT_EQ(config.sensor.gain, built_in.sensor.gain);
@@ -41,11 +41,11 @@ TEST(MicroscopeConfig, ItsFileHasTheDefaults) {
 }
 
 TEST(MicroscopeConfig, RefusesBadKeysAndValues) {
-  EXPECT_EQ(errorOf("{look: {kind: dic}, sensor: {bits: 16}}"), "");
+  EXPECT_EQ(errorOf("{contrast: {mode: dic}, sensor: {bits: 16}}"), "");
   EXPECT_NE(errorOf("{zoom: 2}").find("zoom"), std::string::npos);
   EXPECT_NE(errorOf("{objective: {aperture: 0.4}}").find("objective/aperture"), std::string::npos);
   EXPECT_NE(errorOf("{objective: {numerical_aperture: 0}}").find("numerical_aperture = 0"), std::string::npos);
-  EXPECT_NE(errorOf("{look: {kind: dark_field}}").find("kind = dark_field"), std::string::npos);
+  EXPECT_NE(errorOf("{contrast: {mode: dark_field}}").find("mode = dark_field"), std::string::npos);
   EXPECT_NE(errorOf("{sensor: {bits: 12}}").find("8 or 16"), std::string::npos);
   EXPECT_NE(errorOf("{sensor: {bits: 16, jpeg_quality: 90}}").find("jpeg_quality"), std::string::npos);
   EXPECT_NE(errorOf("{sensor: {gain: 0}}").find("gain = 0"), std::string::npos);
@@ -56,14 +56,14 @@ TEST(MicroscopeConfig, RefusesBadKeysAndValues) {
 TEST(MicroscopeConfig, ReportsAllErrorsAtOnce) {
   MicroscopeConfig config;
   config.objective.wavelength = NAN;
-  config.look.kind = "x";
+  config.contrast.mode = ContrastMode::kUnknown;
   config.sensor.bits = 10;
   try {
     config.validate();
     FAIL();
   } catch (const ConfigError& error) {
     const std::string text = error.what();
-    for (const char* part : {"wavelength = nan", "kind = x", "bits = 10"})
+    for (const char* part : {"wavelength = nan", "mode = unknown", "bits = 10"})
       EXPECT_NE(text.find(part), std::string::npos) << text;
   }
 }

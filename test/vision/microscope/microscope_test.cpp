@@ -18,7 +18,7 @@ MicroscopeConfig smallConfig(const std::string& look = "bright_field") {
   config.camera.width = 480;
   config.camera.height = 400;
   config.camera.origin = {239.5, 199.5};
-  config.look.kind = look;
+  config.contrast.mode = contrastModeOf(look);
   config.illumination.mottle = 0;
   return config;
 }
@@ -168,7 +168,7 @@ TEST(Microscope, PhaseContrastHasAHaloThatCrossesAtTheBorder) {
 
 TEST(Microscope, DicShadesAlongItsShearOnly) {
   MicroscopeConfig config = smallConfig("dic");
-  config.look.shear_angle = 0;
+  config.contrast.shear_angle = 0;
   Microscope microscope(config);
   MicroscopeScene scene = discAt({0, 0}, 30e-6);
   scene.cells[0].cytoplasm.absorption = 0;

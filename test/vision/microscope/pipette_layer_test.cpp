@@ -114,7 +114,7 @@ TEST(PipetteLayer, TheMouthIsTheEndOfTheLips) {
 TEST(PipetteLayer, WallsAreDarkAndTheCoreIsBright) {
   for (const char* look : {"bright_field", "phase", "dic"}) {
     MicroscopeConfig config = pipetteConfig();
-    config.look.kind = look;
+    config.contrast.mode = contrastModeOf(look);
     Microscope microscope(config);
     MicroscopeScene scene;
     scene.injection = InjectionPipette{};

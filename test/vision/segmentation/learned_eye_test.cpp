@@ -95,7 +95,7 @@ TEST(LearnedEye, SeesWhatTheVirtualMicroscopeShows) {
   holder.inner_radius = 13.6e-6;
   scene.holding = holder;
   LearnedEye eye;
-  const Proposal proposal = eye.look(Frame(microscope.render(scene, 0, 3)));
+  const Proposal proposal = eye.propose(Frame(microscope.render(scene, 0, 3)));
   ASSERT_EQ(proposal.cells.size(), 1U);
   EXPECT_TRUE(proposal.cells[0].held);
   EXPECT_NEAR(proposal.cells[0].ooplasm.meanDiameter() * config.camera.pixel_size, 58e-6, 6e-6);

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <boost/program_options.hpp>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace microinjection {
+
+/// Reads a program's words and stores the values of its options. Where they ask for help, prints `help` and the
+/// options.
+/// @param words       without the program's name
+/// @param positional  the option that takes words without a name; empty: there is none
+/// @param most        of them; -1: any number
+/// @return whether the program shall go on: false after its help
+/// @throws ConfigError for words that are no options or have wrong values
+bool readCommandLine(const std::vector<std::string>& words, const boost::program_options::options_description& options,
+                     const std::string& help, boost::program_options::variables_map& given,
+                     const std::string& positional = "", int most = 1);
+
+/// argv without the program's name.
+std::vector<std::string> wordsOf(int argc, char** argv);
+
+/// The exit status of `run`. What it throws is printed, with the program's name before each line, and is kBadUsage.
+int runProgram(const std::string& name, const std::function<int()>& run);
+
+}  // namespace microinjection

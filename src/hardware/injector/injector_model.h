@@ -1,0 +1,60 @@
+#pragma once
+
+#include <optional>
+
+#include "hardware/injector/injector_device.h"
+#include "hardware/injector/injector_limits.h"
+#include "hardware/injector/pipette_flow.h"
+
+namespace microinjection {
+
+struct InjectorModelConfig {
+  double rise_time = 5e-3;  ///< s, time constant of the regulator's first-order response
+  double balance = 545;     ///< Pa, gauge, at the start
+  PipetteConfig pipette;
+  InjectorLimits limits;
+
+  /// Reads its own keys, the section `pipette`, and the limits.
+  static InjectorModelConfig read(ConfigReader& reader);
+};
+
+/// A pressure regulator with a pipette: p' = (target - p) / rise_time, flow by PipetteFlow.
+/// Pressure and volume are integrated exactly, also if a pulse ends within a step, so results do
+/// not depend on the step.
+class InjectorModel : public InjectorDevice {
+ public:
+  explicit InjectorModel(const InjectorModelConfig& config);
+
+  std::string pulse(const InjectionPulse& pulse) override;
+  std::string setBalance(double pressure) override;
+  std::string stop() override;
+  void reset() override;
+  void step(double time) override;
+  const InjectorReading& reading() const override { return reading_; }
+  std::string fault() const override { return ""; }
+
+  /// Starts a pulse that the caller ends by finish() or stop(). Its duration and the limits do not
+  /// apply.
+  void open(const InjectionPulse& pulse);
+  /// Ends the current pulse as completed.
+  void finish();
+
+  /// Injects a fault: the tip's flow resistance is `factor` times that of a clean tip. @pre factor
+  /// >= 1
+  void clog(double factor) { clogging_ = factor; }
+
+ private:
+  void advance(double target, double dt);
+
+  InjectorModelConfig config_;
+  PipetteFlow flow_;
+  double balance_;  ///< Pa
+  double clogging_ = 1;
+  std::optional<InjectionPulse> pulse_;
+  double left_ = 0;  ///< s, remaining time of the pulse
+  double time_ = 0;  ///< s
+  bool begun_ = false;
+  InjectorReading reading_;
+};
+
+}  // namespace microinjection

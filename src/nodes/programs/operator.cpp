@@ -1,6 +1,0 @@
-#include "nodes/operator_node.h"
-#include "nodes/runtime/run_node.h"
-
-int main(int argc, char** argv) {
-  return microinjection::runNode<microinjection::OperatorNode>(argc, argv, "operator");
-}

@@ -1,0 +1,123 @@
+#include "hardware/manipulator/collision_guard.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <regex>
+
+#include "base/errors.h"
+#include "hardware/manipulator/rig_file.h"
+
+namespace microinjection {
+namespace {
+
+class RigGuard : public testing::Test {
+ protected:
+  /// Joint positions (m) for the tip at x, y, z (um) in world.
+  Eigen::Vector3d at(double x, double y, double z) const { return rig_.joints(1e-6 * Eigen::Vector3d(x, y, z)); }
+  void expectBlocked(const std::string& reason, const std::string& mover, const std::string& obstacle) const {
+    EXPECT_NE(reason.find(mover + " would"), std::string::npos) << reason;
+    EXPECT_NE(reason.find(obstacle), std::string::npos) << reason;
+  }
+
+  ManipulatorGeometry rig_ = ManipulatorGeometry::fromUrdf(rigUrdf());
+  CollisionGuard guard_{rigUrdf(), rig_, kMargin};
+};
+
+TEST_F(RigGuard, TheCellIsNoObstacle) {
+  EXPECT_EQ(guard_.blocks(at(0, 0, 0)), "");
+  EXPECT_EQ(guard_.blocksPath(at(0, 0, 60), at(0, 0, -25)), "");
+}
+
+TEST_F(RigGuard, DistancesAreThoseOfTheFile) {
+  EXPECT_NEAR(guard_.clearance(at(0, 0, -10)), 18e-6, 1e-10);       // mouth at -28 um
+  EXPECT_NEAR(guard_.clearance(at(200, 0, -40)), 20e-6, 1e-10);     // floor at -60 um
+  EXPECT_NEAR(guard_.clearance(at(0, 0, 12e3)), 12.028e-3, 1e-10);  // the highest is still the mouth
+  // Beside the holding pipette's rim, by the half sphere at the tip: its centre is 1 um above the tip.
+  EXPECT_NEAR(guard_.clearance(at(34, 0, -26)), std::hypot(4e-6, 3e-6) - 1e-6, 1e-10);
+  // Towards the corner of its travel the part of 0.1 mm comes to the plates at 17 mm from the centre.
+  EXPECT_NEAR(guard_.clearance(at(11.45e3, 11.45e3, 1e3)), 17e-3 - std::hypot(11.45e-3, 11.45e-3) - 0.1e-3, 1e-9);
+}
+
+TEST_F(RigGuard, NamesBothLinksAndTheDistance) {
+  EXPECT_EQ(guard_.blocks(at(0, 0, -25.99)), "");
+  const std::string mouth = guard_.blocks(at(0, 0, -27));
+  expectBlocked(mouth, "needle_tip", "holding_pipette");
+  EXPECT_NE(mouth.find("1e-06 m"), std::string::npos) << mouth;
+  expectBlocked(guard_.blocks(at(100, 0, -59)), "needle_tip", "dish");
+  expectBlocked(guard_.blocks(at(100, 0, -130)), "needle_tip", "dish");  // within the axis' travel, below the floor
+  EXPECT_EQ(rig_.outsideTravel(at(100, 0, -130)), "");
+  expectBlocked(guard_.blocks(at(12.4e3, 12.4e3, 2e3)), "needle_tip", "dish");
+}
+
+TEST_F(RigGuard, AWayIsBlockedThoughItsEndsAreFree) {
+  EXPECT_EQ(guard_.blocks(at(60, 0, -40)), "");
+  EXPECT_EQ(guard_.blocks(at(-60, 0, -40)), "");
+  expectBlocked(guard_.blocksPath(at(60, 0, -40), at(-60, 0, -40)), "needle_tip", "holding_pipette");
+  EXPECT_EQ(guard_.blocksPath(at(60, 0, -40), at(60, 0, -20)), "");
+  EXPECT_EQ(guard_.blocksPath(at(60, 0, -20), at(-60, 0, -20)), "");
+  EXPECT_EQ(guard_.blocksPath(at(0, 0, 60), at(0, 0, 60)), "");
+}
+
+TEST_F(RigGuard, WhoIsTooNearMayLeaveOnly) {
+  EXPECT_EQ(guard_.blocksPath(at(0, 0, -27), at(0, 0, 0)), "");
+  EXPECT_NE(guard_.blocksPath(at(0, 0, -27), at(0, 0, -27.5)), "");
+  EXPECT_NE(guard_.blocksPath(at(0, 0, -27), at(100, 0, -40)), "");  // it would cut through the rim
+  EXPECT_EQ(guard_.blocksPath(at(0, 0, -27), at(10, 0, -27)), "");
+}
+
+TEST_F(RigGuard, SeesTheTiltedPipette) {
+  const double tilt = 1.2;
+  const ManipulatorGeometry tilted = ManipulatorGeometry::fromUrdf(rigUrdf(), tilt);
+  const CollisionGuard guard(rigUrdf(), tilted, kMargin);
+  EXPECT_EQ(guard.blocks(at(0, 0, 60)), "");
+  // Leaning to +x, it meets the wall there as it goes that way; and not as it goes the other way.
+  expectBlocked(guard.blocks(at(8e3, 0, 60)), "pipette", "dish");
+  EXPECT_EQ(guard.blocks(at(-8e3, 0, 60)), "");
+  // The shaft's lower side passes over the wall's upper inner edge (17 mm, 4.94 mm): distance of the edge from its
+  // axis.
+  const double x = 4e-3, z = 2e-3;
+  const double edge = std::cos(tilt) * (17e-3 - x) - std::sin(tilt) * (4.94e-3 - z);
+  EXPECT_NEAR(guard.clearance(at(4e3, 0, 2e3)), edge - 0.5e-3, 1e-9);
+}
+
+TEST_F(RigGuard, RefusesShapesThatItCannotKeepApart) {
+  const auto with = [](const std::string& old_text, const std::string& new_text) {
+    const std::string text = rigUrdf();
+    const std::size_t place = text.find(old_text);
+    EXPECT_NE(place, std::string::npos) << old_text;
+    return text.substr(0, place) + new_text + text.substr(place + old_text.size());
+  };
+  const std::string moving_box = with(R"(<cylinder radius="1e-6" length="99e-6"/>)", R"(<box size="1 1 1"/>)");
+  EXPECT_THROW(CollisionGuard(moving_box, rig_, kMargin), ConfigError);
+  const std::string mesh = with(R"(<cylinder radius="1e-6" length="99e-6"/>)", R"(<mesh filename="a.stl"/>)");
+  EXPECT_THROW(CollisionGuard(mesh, rig_, kMargin), ConfigError);
+  const std::string loose = with(R"("world_to_objective" type="fixed")", R"("world_to_objective" type="floating")");
+  EXPECT_THROW(CollisionGuard(loose, rig_, kMargin), ConfigError);
+}
+
+TEST_F(RigGuard, PrintsWhatAStepCosts) {
+  const auto time = [](const std::function<void(int)>& work, int n) {
+    const auto start = std::chrono::steady_clock::now();
+    for (int i = 0; i < n; ++i) work(i);
+    return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count() / n;
+  };
+  int blocked = 0;
+  const double place = time([&](int i) { blocked += !guard_.blocks(at(i % 100, 0, 60 - i % 80)).empty(); }, 10000);
+  const double step = time(
+      [&](int i) {
+        blocked += !guard_.blocksPath(at(i % 100, 0, 60 - i % 80), at(i % 100 + 1, 0, 60 - i % 80)).empty();
+      },
+      10000);
+  const double across = time(
+      [&](int i) { blocked += !guard_.blocksPath(at(-12e3, 300 + i % 100, -56), at(12e3, 0, 60 - i % 80)).empty(); },
+      1000);
+  std::printf("a place %.1f us, a way of 1 um %.1f us, a way through the dish %.1f us\n", place, step, across);
+  EXPECT_EQ(blocked, 0);
+}
+
+}  // namespace
+}  // namespace microinjection
