@@ -15,9 +15,9 @@
 
 #include "benchmark/bench_main.h"
 #include "benchmark/common/detection_figures.h"
-#include "benchmark/common/injection_case.h"
-#include "benchmark/common/injection_rig.h"
 #include "benchmark/common/surrogate_scene.h"
+#include "trial/injection_case.h"
+#include "trial/injection_rig.h"
 
 namespace microinjection {
 namespace {
@@ -66,9 +66,7 @@ Outcome inject(const Bench& bench, const InjectionCase& of, const InjectionRig::
   config.sensor.seed = of.seed;
   config.manipulator = bench.manipulator;
   config.manipulator.seed = of.seed;
-  const double radius = 0.5 * of.cell.diameter;
-  const double top = std::sqrt(radius * radius - of.offset.squaredNorm());
-  config.start = {of.offset.x(), of.offset.y(), top + of.gap};
+  config.start = startOf(of);
   InjectionRig rig(config, bench.geometry, cell);
   rig.run(kLongest);
   Outcome outcome{of, {}, rig.controller().result()};

@@ -1,7 +1,7 @@
 """Holds the include lines of src/ and benchmark/ to the dependency rule of src/CMakeLists.txt.
 
 A room includes only itself and the rooms that its microinjection_room(... DEPENDS ...) names, directly or in turn. A
-room of one wing never depends on one of another. Only src/nodes includes ROS; nothing else includes src/nodes or
+room of one wing never depends on one of another; one without a wing may join them. Only src/nodes includes ROS; nothing else includes src/nodes or
 benchmark. benchmark/emulated_haptic is a node and includes both. src/rviz, a plugin of rviz, includes ROS,
 rooms, and of src/nodes the bus and what every node uses.
 """
@@ -14,8 +14,8 @@ ROOT = Path(__file__).resolve().parent.parent
 SOURCE = ROOT / 'src'
 
 # Folders that are programs and not rooms: they may include every room, and no room may include them.
-PROGRAMS = {'nodes', 'rviz', 'commands', 'tools', 'workflow', 'benchmark', 'benchmark/emulated_haptic'}
-KNOWS_ROS = {'nodes', 'rviz', 'benchmark/emulated_haptic'}
+PROGRAMS = {'nodes', 'rviz', 'commands', 'tools', 'workflow', 'python', 'benchmark', 'benchmark/emulated_haptic'}
+KNOWS_ROS = {'nodes', 'rviz', 'python', 'benchmark/emulated_haptic'}
 FOR_THE_CONSOLE = re.compile('nodes/(bus|runtime)/')
 
 # First folders of the include paths of ROS, of its libraries and of generated messages (ours too).
@@ -40,7 +40,7 @@ def read_rooms(cmake_text):
         for dependency in depends.group(1).split() if depends else []:
             if dependency not in allowed:
                 raise ValueError(f'room {name} depends on {dependency}, which is not declared above it')
-            if '/' in dependency and dependency.split('/')[0] != name.split('/')[0]:
+            if '/' in name and '/' in dependency and dependency.split('/')[0] != name.split('/')[0]:
                 raise ValueError(f'room {name} depends on {dependency}, which is in another wing')
             allowed[name] |= allowed[dependency]
     return allowed
@@ -59,7 +59,7 @@ def check_include(folder, target, allowed):
     if ROS_FOLDERS.match(target):
         return None if folder in KNOWS_ROS else 'only src/nodes may include ROS'
     if first in PROGRAMS and '/' in target:
-        if first == folder or (first == 'nodes' and folder == 'benchmark/emulated_haptic'):
+        if first == folder or (first == 'nodes' and folder in ('benchmark/emulated_haptic', 'python')):
             return None
         if folder == 'rviz' and first == 'nodes':
             return None if FOR_THE_CONSOLE.match(target) else 'src/rviz includes of src/nodes only bus and runtime'

@@ -16,24 +16,6 @@
 namespace microinjection {
 namespace {
 
-enum class Served { kExplicit, kLive, kSurrogate };
-
-/// Surrogate data for a scene.
-struct SurrogateSource {
-  std::shared_ptr<const SurrogateData> data;  ///< none: `text` is the reason
-  std::string text;                           ///< where they are from
-  std::shared_ptr<const FamilyData> family;   ///< that contains the scene; null: none
-};
-
-/// What will serve a scene.
-struct ServingPlan {
-  Served served = Served::kLive;
-  std::string reason;  ///< user-readable
-  bool as_required = true;
-  bool is_fallback = false;  ///< live, because there are no surrogate data
-  SurrogateSource source{};
-};
-
 /// Why a scene's own surrogate data cannot be used, and what to do; `call` prepares them.
 std::string missingReason(const CacheRead<SurrogateData>& read, const std::string& call) {
   static const std::map<CacheState, std::pair<std::string, std::string>> kReasons = {
@@ -102,8 +84,10 @@ ServingPlan planBetween(const Scene& scene, const std::string& model, const std:
   return plan;
 }
 
-ServingPlan planFor(const Scene& scene, const std::string& model, const std::string& families,
-                    const std::string& call) {
+}  // namespace
+
+ServingPlan planServing(const Scene& scene, const std::string& model, const std::string& families,
+                        const std::string& call) {
   ServingPlan plan;
   if (model == "explicit") {
     plan.served = Served::kExplicit;
@@ -119,11 +103,9 @@ ServingPlan planFor(const Scene& scene, const std::string& model, const std::str
   return plan;
 }
 
-}  // namespace
-
 ChosenCellModel makeCellModel(const Scene& scene, const std::string& model, const CellModelConfig& config,
                               const std::string& path) {
-  ServingPlan plan = planFor(scene, model, config.families, "rosrun cell_microinjection prepare --scene " + path);
+  ServingPlan plan = planServing(scene, model, config.families, "rosrun cell_microinjection prepare --scene " + path);
   ChosenCellModel chosen{nullptr, std::move(plan.reason), plan.as_required, nullptr, "only a cell of a family can"};
   std::unique_ptr<CellModel> tracker;
   if (plan.served == Served::kExplicit) {

@@ -19,6 +19,29 @@ struct ChosenCellModel {
   std::string unchangeable{};
 };
 
+/// Surrogate data for a scene.
+struct SurrogateSource {
+  std::shared_ptr<const SurrogateData> data;  ///< none: `text` is the reason
+  std::string text;                           ///< where they are from
+  std::shared_ptr<const FamilyData> family;   ///< that contains the scene; null: none
+};
+
+enum class Served { kExplicit, kLive, kSurrogate };
+
+/// What will serve a scene.
+struct ServingPlan {
+  Served served = Served::kLive;
+  std::string reason;  ///< user-readable
+  bool as_required = true;
+  bool is_fallback = false;  ///< live, because there are no surrogate data
+  SurrogateSource source{};
+};
+
+/// The first half of makeCellModel(), for those who do not serve a moving needle. `call`: the command that prepares the
+/// scene, for messages. @throws ConfigError as makeCellModel()
+ServingPlan planServing(const Scene& scene, const std::string& model, const std::string& families,
+                        const std::string& call);
+
 struct CellModelConfig {
   std::string families;  ///< folder of family files; empty: none
   LiveCellModelConfig live;

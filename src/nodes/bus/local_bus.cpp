@@ -109,6 +109,17 @@ std::vector<std::string> LocalBus::publishersOf(const std::string& topic) const 
   return nodes;
 }
 
+std::vector<std::string> LocalBus::topics() const {
+  std::vector<std::string> names;
+  for (const auto& topic : network_.topics_) names.push_back(topic.first);
+  return names;
+}
+
+const MessageType* LocalBus::typeOf(const std::string& topic) const {
+  const auto found = network_.topics_.find(resolve(topic));
+  return found == network_.topics_.end() ? nullptr : found->second->type;
+}
+
 void LocalBus::setStep(double period, std::function<void(const ros::Time&)> step) {
   period_ = durationOf(period);
   step_ = std::move(step);

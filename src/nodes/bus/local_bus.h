@@ -78,6 +78,17 @@ class LocalBus : public Bus {
   /// The node gets no turn before this time, as if the machine had delayed it.
   void holdUntil(const ros::Time& time) { held_until_ = time; }
 
+  /// For programs that know topics by name only: the names, the type of one (null: no node has it), and its ends.
+  std::vector<std::string> topics() const;
+  const MessageType* typeOf(const std::string& topic) const;
+  Subscription subscribeAny(const MessageType& type, const std::string& topic, std::uint32_t queue,
+                            RawHandler handler) {
+    return Subscription(subscribeRaw(type, topic, queue, std::move(handler), Serving::kSampled));
+  }
+  std::shared_ptr<RawPublisher> advertiseAny(const MessageType& type, const std::string& topic, std::uint32_t queue) {
+    return advertiseRaw(type, topic, queue, false);
+  }
+
   /// Resolved topics that the node publishes, and those whose messages start its steps: the Executive orders nodes by
   /// them.
   std::vector<std::string> published() const;

@@ -3,6 +3,7 @@
 #include <ros/message_event.h>
 #include <ros/message_traits.h>
 #include <ros/ros.h>
+#include <ros/serialization.h>
 
 #include <boost/make_shared.hpp>
 #include <boost/shared_ptr.hpp>
@@ -36,6 +37,9 @@ struct MessageType {
                                const RawHandler& handler);
   /// A copy whose header, if it has one, has this sequence number, as roscpp's publishers count.
   boost::shared_ptr<const void> (*copy)(const void* message, std::uint32_t sequence);
+  /// In ROS' serialisation, for programs that know types by name only; null for bytes that are no such message.
+  std::string (*serialize)(const void* message);
+  boost::shared_ptr<const void> (*deserialize)(const std::string& bytes);
 };
 
 namespace detail {
@@ -72,6 +76,26 @@ struct TypedMessage {
     if constexpr (ros::message_traits::HasHeader<Message>::value) copied->header.seq = sequence;
     return copied;
   }
+  static std::string serialize(const void* message) {
+    const auto& typed = *static_cast<const Message*>(message);
+    std::string bytes(ros::serialization::serializationLength(typed), '\0');
+    ros::serialization::OStream stream(reinterpret_cast<std::uint8_t*>(bytes.data()),
+                                       static_cast<std::uint32_t>(bytes.size()));
+    ros::serialization::serialize(stream, typed);
+    return bytes;
+  }
+  static boost::shared_ptr<const void> deserialize(const std::string& bytes) {
+    const auto message = boost::make_shared<Message>();
+    std::string copied = bytes;
+    ros::serialization::IStream stream(reinterpret_cast<std::uint8_t*>(copied.data()),
+                                       static_cast<std::uint32_t>(copied.size()));
+    try {
+      ros::serialization::deserialize(stream, *message);
+    } catch (const ros::serialization::StreamOverrunException&) {
+      return nullptr;
+    }
+    return message;
+  }
 };
 
 }  // namespace detail
@@ -85,7 +109,9 @@ const MessageType& messageType() {
                                 Typed::publish,
                                 Typed::publishShared,
                                 Typed::subscribe,
-                                Typed::copy};
+                                Typed::copy,
+                                Typed::serialize,
+                                Typed::deserialize};
   return type;
 }
 

@@ -59,6 +59,7 @@ build_bench() {
       install_component emulated_haptic
       ;;
     peers) build_targets bench_peers ;;
+    python) build_targets bench_force_calls ;;
   esac
   use_private_master
 }

@@ -1,4 +1,4 @@
-#include "benchmark/common/injection_case.h"
+#include "trial/injection_case.h"
 
 #include <algorithm>
 #include <cmath>
@@ -34,6 +34,11 @@ InjectionCase randomInjectionCase(int seed) {
   result.offset = far * Eigen::Vector2d(std::cos(angle), std::sin(angle));
   result.gap = even(5e-6, 20e-6);
   return result;
+}
+
+Eigen::Vector3d startOf(const InjectionCase& of) {
+  const double radius = 0.5 * of.cell.diameter, top = std::sqrt(radius * radius - of.offset.squaredNorm());
+  return {of.offset.x(), of.offset.y(), top + of.gap};
 }
 
 InjectionControllerConfig injectionSettings(const InjectionCase& of) {

@@ -3,12 +3,12 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "benchmark/common/scaled_cell.h"
 #include "hardware/injector/injector_model.h"
 #include "hardware/manipulator/micromanipulator.h"
 #include "hardware/manipulator/simulated_manipulator.h"
 #include "hardware/sensor/force_sensor.h"
 #include "operation/control/injection_controller.h"
+#include "trial/scaled_cell.h"
 
 namespace microinjection {
 
@@ -38,7 +38,14 @@ class InjectionRig {
 
   /// Until the controller's injection is over, or `limit` (s).
   void run(double limit);
-  void step();
+  /// @param target  m, where a hand wants the tip, for a controller of the mode manual
+  void step(const std::optional<Eigen::Vector3d>& target = std::nullopt);
+  /// A command to the controller. @returns why it is refused; empty: it is not
+  std::string command(const std::string& command) { return controller_.command(command); }
+  double time() const { return time_ - began_; }                 ///< s, since the start
+  double volume() const { return injector_.reading().volume; }   ///< m^3, delivered
+  const Eigen::Vector2d& reading() const { return reading_; }    ///< N, of the sensor: axial, lateral
+  const Eigen::Vector3d& measured() const { return measured_; }  ///< m, the tip as the device tells it
 
   // What truly happened.
   struct Truth {
@@ -52,6 +59,8 @@ class InjectionRig {
     int unfelt = 0;            ///< failures that the controller has not felt
     bool valid = true;         ///< the cell's force, always
     double depth = 0;          ///< m, now
+    double force = 0;          ///< N, along the pipette, now
+    bool in_cell = false;      ///< in contact or through a membrane, now
   };
   const Truth& truth() const { return truth_; }
   const InjectionController& controller() const { return controller_; }
@@ -72,6 +81,8 @@ class InjectionRig {
   InjectorModel injector_;
   InjectionController controller_;
   ScaledCell* cell_;
+  Eigen::Vector2d reading_ = Eigen::Vector2d::Zero();   ///< N
+  Eigen::Vector3d measured_ = Eigen::Vector3d::Zero();  ///< m
   Disturbance disturbance_;
   std::optional<ExpectedPuncture> expected_;
   double began_ = 0;  ///< s

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "benchmark/common/scaled_cell.h"
 #include "operation/control/injection_controller.h"
+#include "trial/scaled_cell.h"
 
 namespace microinjection {
 
@@ -22,6 +22,9 @@ struct InjectionCase {
 /// behind it; two Prony terms; offset up to 0.3 R; what a failure leaves falls in 1 to 10 ms, to a
 /// friction of the shaft of up to 0.3 of the zona's strength.
 InjectionCase randomInjectionCase(int seed);
+
+/// m, where the tip begins, above the cell.
+Eigen::Vector3d startOf(const InjectionCase& of);
 
 /// What an operator sets for a kind of cell: its diameter is seen, its modulus is assumed, the
 /// layers are known.

@@ -1,4 +1,4 @@
-#include "benchmark/common/scaled_cell.h"
+#include "trial/scaled_cell.h"
 
 #include <utility>
 

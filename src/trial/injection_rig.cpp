@@ -1,4 +1,4 @@
-#include "benchmark/common/injection_rig.h"
+#include "trial/injection_rig.h"
 
 #include <algorithm>
 #include <cmath>
@@ -53,15 +53,16 @@ bool InjectionRig::holds() {
   return (tip() - before).norm() < 1e-8 && !controller_.pulse() && !injector_.reading().busy;
 }
 
-void InjectionRig::step() {
+void InjectionRig::step(const std::optional<Eigen::Vector3d>& target) {
   time_ += kStep;
   const Eigen::Vector3d tip = this->tip();
   const Eigen::Vector3d force = cell_->step(tip, time_);
   monitor(force, tip);
-  const Eigen::Vector2d reading = sensor_.sample({force.z(), force.x()}, kStep);
+  reading_ = sensor_.sample({force.z(), force.x()}, kStep);
   InjectionController::Input input;
-  if (const auto pose = manipulator_.tipPose()) input.needle = pose->translation();
-  input.force = Eigen::Vector3d(reading.y(), 0, reading.x());
+  input.target = target;
+  if (const auto pose = manipulator_.tipPose()) input.needle = measured_ = pose->translation();
+  input.force = Eigen::Vector3d(reading_.y(), 0, reading_.x());
   input.injector =
       InjectorReport{injector_.reading().busy, injector_.reading().volume, injector_.reading().last_id == pulses_};
   input.expected = expected_;
@@ -87,6 +88,8 @@ void InjectionRig::step() {
 
 void InjectionRig::monitor(const Eigen::Vector3d& force, const Eigen::Vector3d& tip) {
   truth_.valid = truth_.valid && cell_->valid();
+  truth_.force = force.z();
+  truth_.in_cell = cell_->inCell();
   truth_.peak_force = std::max(truth_.peak_force, std::abs(force.z()));
   if (cell_->touched() && !touch_height_) touch_height_ = tip.z();
   truth_.depth = touch_height_ ? *touch_height_ - tip.z() : 0;

@@ -30,6 +30,8 @@ class ScaledCell {
 
   int layersPunctured() const { return cell_->insertion().layers_punctured; }
   bool touched() const { return cell_->contact().has_value(); }
+  /// In contact, or through a membrane.
+  bool inCell() const { return touched() || cell_->insertion().inside; }
   bool valid() const { return valid_; }  ///< the last force
   /// E R^2 (N): the size of its forces.
   double forceScale() const { return force_scale_; }

@@ -1,0 +1,338 @@
+#!/usr/bin/python3
+"""Tasks that anybody's program can enter: a tool's force with its error, a cell's modulus, an injection of random cells.
+
+    ./dev bench field                                  # all entries that are here
+    ./dev bench field -- --entry mine.py --seed 7      # and a stranger's, on cells that nobody has seen
+
+The cells are drawn from the seed, so that nobody can tune to them, and the reference of each force is solved here, on
+finer and finer meshes until it is known to 0.3 %. An entry is a Python file with any of
+
+    def force(scene, depths):             scene: a dict as a scene file; depths: m, (n,)
+        return forces                     # N, along the pipette, (n,); nan where there is none
+    def modulus(scene, depths, forces):   forces: N, (n,), with a sensor's noise
+        return modulus                    # Pa, of the cell
+    def policy(observation):              names in cell_microinjection.gym.OBSERVATION; asked each 10 ms
+        return vx, vy, vz, inject         # m/s, and whether to inject
+    def prepare(scenes): ...              # once, before any force; its time is told
+"""
+import argparse
+import csv
+import importlib.util
+import os
+import platform
+import sys
+import time
+from pathlib import Path
+
+import matplotlib
+import numpy
+
+from cell_microinjection import Cell, ConfigError, Scene, __version__, gym, identify, indent
+
+matplotlib.use('Agg')
+import matplotlib.pyplot as plt  # noqa: E402  the backend is chosen before
+
+REFERENCE = 0.003           # relative error that a reference may have
+DEEPEST, DEPTHS = 0.2, 20    # over the diameter; of a reference, closer to each other where it is shallow
+NOISE = 0.01                # of the largest force, standard deviation of a reading
+PERIOD = 10                 # ms, of a policy
+LINES = ('task', 'entry', 'cases', 'median', 'nine of ten', 'worst', 'failed', 'us a force', 'prepared in s', 'broke even')
+
+
+def drawn_scenes(count, seed):
+    """Oocytes and other round cells under a hemisphere: size, modulus, tip, holder and Poisson's ratio at random."""
+    random = numpy.random.default_rng(seed)
+    base = Scene.load('mouse_oocyte_injection')
+    scenes = []
+    for _ in range(count):
+        diameter = random.uniform(30e-6, 150e-6)
+        scenes.append(base.replace({
+            'cell/diameter': diameter, 'cell/material/young_modulus': numpy.exp(random.uniform(*numpy.log([2e3, 45e3]))),
+            'cell/material/poisson_ratio': random.uniform(0.455, 0.498), 'needle/tip/radius': diameter * random.uniform(0.022, 0.095),
+            'holding_pipette/contact_radius': diameter * random.uniform(0.12, 0.24)}))
+    return scenes
+
+
+class Ours:
+    """A cell by the same choice as a session, or by a named model."""
+
+    def __init__(self, model):
+        self._model, self._cell, self._scene = model, None, None
+
+    def force(self, scene, depths):
+        if self._scene is not scene:
+            self._cell, self._scene = Cell(Scene(scene), self._model), scene
+        return self._cell.force(self._cell.tips(depths), along=True)[:, 2]
+
+
+class Family(Ours):
+    """A member of a shipped family, and `identify` with it."""
+
+    def __init__(self):
+        super().__init__('surrogate')
+
+    @staticmethod
+    def modulus(scene, depths, forces):
+        return identify({'position_m': depths, 'force_N': forces}, Scene(scene), intervals=False)['young_modulus'].value
+
+
+class Hertz:
+    """Paraboloid on a sphere (Johnson, Contact Mechanics, 4.2)."""
+
+    @staticmethod
+    def force(scene, depths):
+        cell, tip = scene['cell'], scene['needle']['tip']
+        radius = 1 / (1 / tip['radius'] + 2 / cell['diameter'])
+        plane = cell['material']['young_modulus'] / (1 - cell['material']['poisson_ratio'] ** 2)
+        return 4 / 3 * plane * numpy.sqrt(radius) * numpy.maximum(depths, 0) ** 1.5
+
+    @staticmethod
+    def modulus(scene, depths, forces):
+        return identify({'position_m': depths, 'force_N': forces}, Scene(scene), 'hertz', intervals=False)['young_modulus'].value
+
+
+class Shell:
+    """A point load on a thin shell of a tenth of the radius (Reissner 1946): what a cell with a stiff border would be."""
+
+    @staticmethod
+    def force(scene, depths):
+        cell = scene['cell']
+        radius, nu = cell['diameter'] / 2, cell['material']['poisson_ratio']
+        thickness = 0.1 * radius
+        return 4 * cell['material']['young_modulus'] * thickness**2 * depths / (radius * numpy.sqrt(3 * (1 - nu**2)))
+
+
+class Network:
+    """A small neural network, trained on forces of the same kind of cell that are solved here (PyTorch)."""
+
+    def __init__(self, count, seed):
+        self._count, self._seed, self._net = count, seed, None
+
+    @staticmethod
+    def _inputs(scene, depths):
+        cell = scene['cell']
+        ratios = [scene['needle']['tip']['radius'] / cell['diameter'], scene['holding_pipette']['contact_radius'] / cell['diameter'],
+                  cell['material']['poisson_ratio']]
+        return numpy.column_stack([numpy.tile(ratios, (len(depths), 1)), numpy.asarray(depths) / cell['diameter']])
+
+    @staticmethod
+    def _scale(scene):
+        return scene['cell']['material']['young_modulus'] * scene['cell']['diameter'] ** 2
+
+    def prepare(self, _):
+        import torch
+        torch.manual_seed(self._seed)
+        torch.set_num_threads(1)
+        inputs, outputs = [], []
+        for scene in drawn_scenes(self._count, self._seed + 1):
+            depths = numpy.linspace(0.01, 0.21, 12) * scene.diameter
+            solved = indent(scene, depths, tolerance=0.01)
+            good = solved['converged']
+            keys = scene.to_dict()
+            inputs.append(self._inputs(keys, depths)[good])
+            outputs.append(numpy.log(solved['force'][good, 2] / self._scale(keys)))
+        inputs, outputs = numpy.concatenate(inputs), numpy.concatenate(outputs)
+        self._mean, self._deviation = inputs.mean(0), inputs.std(0)
+        self._power = numpy.polyfit(numpy.log(inputs[:, -1]), outputs, 1)
+        x = torch.tensor((inputs - self._mean) / self._deviation, dtype=torch.float64)
+        y = torch.tensor(outputs - numpy.polyval(self._power, numpy.log(inputs[:, -1])), dtype=torch.float64)
+        self._net = torch.nn.Sequential(torch.nn.Linear(4, 48), torch.nn.Tanh(), torch.nn.Linear(48, 48), torch.nn.Tanh(),
+                                        torch.nn.Linear(48, 1)).double()
+        steps = torch.optim.LBFGS(self._net.parameters(), max_iter=1500, history_size=50, line_search_fn='strong_wolfe')
+
+        def loss():
+            steps.zero_grad()
+            value = ((self._net(x)[:, 0] - y) ** 2).mean() + 1e-7 * sum((p**2).sum() for p in self._net.parameters())
+            value.backward()
+            return value
+
+        steps.step(loss)
+
+    def force(self, scene, depths):
+        import torch
+        inputs = self._inputs(scene, depths)
+        with torch.no_grad():
+            rest = self._net(torch.tensor((inputs - self._mean) / self._deviation))[:, 0].numpy()
+        return self._scale(scene) * numpy.exp(rest + numpy.polyval(self._power, numpy.log(inputs[:, -1])))
+
+
+class Proportional:
+    """Down until a membrane has given way, deeper until all have, the pulse, and out: 20 lines, as a stranger would begin."""
+
+    @staticmethod
+    def policy(observation):
+        seen = dict(zip(gym.OBSERVATION, observation))
+        state, diameter = gym.STATES[int(seen['state'])], seen['diameter_m']
+        if seen['volume_m3'] > 1.5e-14:
+            return 0, 0, 0.5 * diameter, 0
+        if state in ('punctured', 'inject') and seen['punctures'] >= 1:
+            return 0, 0, 0, 1
+        speed = 0.25 if state in ('idle', 'approach') else 0.08
+        return 0, 0, -speed * diameter, 0
+
+
+def load_entry(path):
+    spec = importlib.util.spec_from_file_location(Path(path).stem, path)
+    if spec is None:
+        raise ConfigError(f'--entry {path}: is no Python file')
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    if not any(hasattr(module, name) for name in ('force', 'modulus', 'policy')):
+        raise ConfigError(f'--entry {path}: has none of the functions force, modulus and policy')
+    return module
+
+
+def quantiles(errors):
+    errors = numpy.sort(errors)
+    if not len(errors):
+        return '', '', ''
+    return tuple(f'{100 * errors[int(share * (len(errors) - 1))]:.2g}' for share in (0.5, 0.9, 1))
+
+
+def references(scenes):
+    """@returns [(scene as a dict, depths, forces)], of forces that are known to REFERENCE."""
+    known = []
+    for number, scene in enumerate(scenes):
+        print(f'\rfield: reference {number + 1} of {len(scenes)}', end='', file=sys.stderr)
+        depths = DEEPEST * scene.diameter * (numpy.arange(1, DEPTHS + 1) / DEPTHS) ** 2
+        solved = indent(scene, depths, tolerance=REFERENCE)
+        good = solved['converged'] & (solved['error_estimate'] <= REFERENCE)
+        if good.any():
+            known.append((scene.to_dict(), depths[good], solved['force'][good, 2]))
+    print(file=sys.stderr)
+    return known
+
+
+def score_force(name, entry, known, solved_in):
+    begin = time.perf_counter()
+    if hasattr(entry, 'prepare'):
+        entry.prepare([scene for scene, _, _ in known])
+    prepared = time.perf_counter() - begin
+    errors, failed, costs = [], 0, []
+    for scene, depths, truth in known:
+        try:
+            found = numpy.asarray(entry.force(scene, depths), dtype=float)
+            begin = time.perf_counter()
+            entry.force(scene, depths)
+            costs.append((time.perf_counter() - begin) / len(depths))
+        except ConfigError:
+            failed += len(depths)
+            continue
+        good = numpy.isfinite(found)
+        failed += int((~good).sum())
+        errors.extend(numpy.abs(found[good] / truth[good] - 1))
+    cost = numpy.median(costs) if costs else numpy.nan
+    even = f'{prepared / max(solved_in - cost, 1e-9):.0f}' if prepared > 0.01 else ''
+    return ('force', name, sum(len(depths) for _, depths, _ in known), *quantiles(errors), failed, f'{1e6 * cost:.2g}',
+            f'{prepared:.3g}', even), errors, cost
+
+
+def score_modulus(name, entry, known, seed):
+    random = numpy.random.default_rng(seed)
+    errors, failed = [], 0
+    for scene, depths, truth in known:
+        modulus = scene['cell']['material']['young_modulus']
+        fine = numpy.concatenate([numpy.linspace(-0.05, 0, 60), numpy.linspace(0, 1, 240)]) * depths[-1]
+        into = numpy.maximum(fine, 0)
+        # Between known forces a power of the depth; above the first one that of Hertz.
+        shallow = into < depths[0]
+        force = numpy.exp(numpy.interp(numpy.log(numpy.maximum(into, depths[0])), numpy.log(depths), numpy.log(truth)))
+        force[shallow] = truth[0] * (into[shallow] / depths[0]) ** 1.5
+        force = force + random.normal(0, NOISE * truth[-1], len(force))
+        told = {**scene, 'cell': {**scene['cell'], 'material': {**scene['cell']['material'], 'young_modulus': 10e3}}}
+        try:
+            errors.append(abs(entry.modulus(told, fine, force) / modulus - 1))
+        except ConfigError:
+            failed += 1
+    return 'modulus', name, len(known), *quantiles(errors), failed, '', '', ''
+
+
+def score_policy(name, entry, cells):
+    scores, injected = [], 0
+    for cell in cells:
+        env = gym.Inject(steps=PERIOD)
+        observation, _ = env.reset(options={'cell': int(cell)})
+        over = False
+        while not over:
+            observation, _, done, late, info = env.step(entry.policy(observation))
+            over = done or late
+        scores.append(info['score'])
+        injected += info['measures']['punctures']['value'] >= info['measures']['punctures']['reference'] and info['outcome'] == 'complete'
+    scores = numpy.sort(scores)
+    return ('injection, score', name, len(cells), f'{scores[len(scores) // 2]:.3g}', f'{scores[len(scores) // 10]:.3g}', f'{scores[0]:.3g}',
+            len(cells) - injected, '', '', '')
+
+
+def draw(figures, path):
+    figure, axes = plt.subplots(figsize=(7, 4.5))
+    for name, (errors, cost) in figures.items():
+        if not errors or not cost > 0:
+            continue
+        errors = numpy.sort(errors)
+        middle = 100 * errors[len(errors) // 2]
+        axes.errorbar([1e6 * cost], [middle], yerr=[[0], [100 * errors[int(0.9 * (len(errors) - 1))] - middle]], fmt='o', capsize=3)
+        axes.annotate(name, (1e6 * cost, middle), textcoords='offset points', xytext=(6, 4))
+    axes.set_xscale('log')
+    axes.set_yscale('log')
+    axes.set_xlabel('time of a force (us)')
+    axes.set_ylabel('error of the force (%), median and nine of ten')
+    axes.grid(True, which='both', alpha=0.2)
+    figure.tight_layout()
+    figure.savefig(path, dpi=120)
+
+
+def parse_arguments():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('--out', type=Path, required=True, help='folder of field.csv and field.png')
+    parser.add_argument('--seed', type=int, default=1, help='of the cells (default %(default)s)')
+    parser.add_argument('--cells', type=int, default=24, help='whose force is asked for (default %(default)s)')
+    parser.add_argument('--injections', type=int, default=200, help='random cells for policies (default %(default)s)')
+    parser.add_argument('--entry', type=Path, action='append', default=[], help='file of an entry; may be repeated')
+    parser.add_argument('--network', type=int, default=60, help='cells that the network is trained on; 0: without it')
+    parser.add_argument('--without', default='', help='entries that are left out, with commas between them')
+    return parser.parse_args()
+
+
+def entries_of(arguments):
+    entries = {'family': Family(), 'live': Ours('live'), 'hertz': Hertz, 'shell': Shell, 'proportional': Proportional}
+    if arguments.network and importlib.util.find_spec('torch'):
+        entries['network'] = Network(arguments.network, arguments.seed + 1000)
+    for path in arguments.entry:
+        entries[path.stem] = load_entry(path)
+    return {name: entry for name, entry in entries.items() if name not in arguments.without.split(',')}
+
+
+def main():
+    arguments = parse_arguments()
+    try:
+        entries = entries_of(arguments)
+    except (ConfigError, OSError, SyntaxError) as error:
+        sys.exit(f'field: {error}')
+    print(f'machine: {platform.machine()}, {os.cpu_count()} cores; version {__version__}; seed {arguments.seed}')
+    begin = time.perf_counter()
+    known = references(drawn_scenes(arguments.cells, arguments.seed))
+    solved_in = (time.perf_counter() - begin) / max(sum(len(depths) for _, depths, _ in known), 1)
+    rows, figures = [], {}
+    for name, entry in entries.items():
+        print(f'field: {name}', file=sys.stderr)
+        if hasattr(entry, 'force'):
+            row, errors, cost = score_force(name, entry, known, solved_in)
+            rows.append(row)
+            figures[name] = (errors, cost)
+        if hasattr(entry, 'modulus'):
+            rows.append(score_modulus(name, entry, known, arguments.seed))
+        if hasattr(entry, 'policy'):
+            cells = numpy.random.default_rng(arguments.seed).integers(1, 2**31 - 1, arguments.injections)
+            rows.append(score_policy(name, entry, cells))
+    with (arguments.out / 'field.csv').open('w', encoding='utf-8', newline='') as file:
+        table = csv.writer(file)
+        table.writerow(LINES)
+        table.writerows(rows)
+    widths = [max(len(str(row[i])) for row in [LINES, *rows]) for i in range(len(LINES))]
+    for row in [LINES, *rows]:
+        print('  '.join(str(cell).ljust(width) for cell, width in zip(row, widths)))
+    draw(figures, arguments.out / 'field.png')
+
+
+if __name__ == '__main__':
+    main()

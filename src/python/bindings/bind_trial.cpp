@@ -1,0 +1,81 @@
+// Trial: an injection of a random cell, one millisecond after another.
+
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <memory>
+
+#include "base/errors.h"
+#include "cell/family/family_cell.h"
+#include "python/bindings/arrays.h"
+#include "python/bindings/module.h"
+#include "session/package_folder.h"
+#include "trial/hand_trial.h"
+
+namespace microinjection {
+
+namespace py = pybind11;
+
+namespace {
+
+/// The cell that all random ones are made from, read once in a process.
+const TrialCell& trialCell() {
+  static const TrialCell cell = [] {
+    const Scene scene = loadScene(packageFolder() + "/config/cells/mouse_oocyte_pipette.yaml");
+    std::string reason;
+    const auto member = findFamilyCell(packageFolder() + "/config/families", scene, reason);
+    if (!member) throw ConfigError("the trial's cell is in no family: " + reason);
+    return TrialCell{scene, member->data, packageFolder() + "/urdf/rig.urdf"};
+  }();
+  return cell;
+}
+
+PyArray observationOf(const HandTrial& trial) { return toArray(Eigen::VectorXd(trial.observation())); }
+
+}  // namespace
+
+void bindTrial(py::module_& module) {
+  py::class_<HandTrial>(module, "Trial")
+      .def(py::init([](int seed, double force_delay, double noise) {
+             HandTrial::Config config;
+             config.seed = seed;
+             config.force_delay = force_delay;
+             config.noise = noise;
+             return std::make_unique<HandTrial>(trialCell(), config);
+           }),
+           py::arg("seed"), py::kw_only(), py::arg("force_delay") = 0.0, py::arg("noise") = 1.0)
+      .def(
+          "step",
+          [](HandTrial& trial, double vx, double vy, double vz, bool inject, int steps) {
+            trial.step({vx, vy, vz}, inject, steps);
+            return observationOf(trial);
+          },
+          py::arg("vx"), py::arg("vy"), py::arg("vz"), py::arg("inject") = false, py::arg("steps") = 1)
+      .def_property_readonly("observation", &observationOf)
+      .def_property_readonly("over", &HandTrial::over)
+      .def_property_readonly("state", &HandTrial::state)
+      .def_property_readonly("notice", &HandTrial::notice)
+      .def_property_readonly("true_force", &HandTrial::trueForce)
+      .def("score", [](const HandTrial& trial) {
+        const TrainingScore score = trial.score();
+        py::dict measures, result;
+        std::size_t i = 0;
+        for (const TrainingMeasure& measure : score.measures(trial.task())) {
+          py::dict one;
+          one["value"] = measure.value;
+          one["reference"] = measure.reference;
+          one["points"] = score.points[i++];
+          measures[measure.key] = one;
+        }
+        result["outcome"] = toText(score.outcome);
+        result["reason"] = score.reason;
+        result["score"] = score.score();
+        result["measures"] = measures;
+        return result;
+      });
+  py::list names;
+  for (const char* name : HandTrial::kObservation) names.append(name);
+  module.attr("trial_observation") = py::tuple(names);
+}
+
+}  // namespace microinjection
