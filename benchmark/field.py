@@ -33,7 +33,7 @@ matplotlib.use('Agg')
 import matplotlib.pyplot as plt  # noqa: E402  the backend is chosen before
 
 REFERENCE = 0.003           # relative error that a reference may have
-DEEPEST, DEPTHS = 0.2, 20    # over the diameter; of a reference, closer to each other where it is shallow
+SHARES = numpy.linspace(0.02, 0.2, 10)  # depths of a reference, over the diameter
 NOISE = 0.01                # of the largest force, standard deviation of a reading
 PERIOD = 10                 # ms, of a policy
 LINES = ('task', 'entry', 'cases', 'median', 'nine of ten', 'worst', 'failed', 'us a force', 'prepared in s', 'broke even')
@@ -194,7 +194,7 @@ def references(scenes):
     known = []
     for number, scene in enumerate(scenes):
         print(f'\rfield: reference {number + 1} of {len(scenes)}', end='', file=sys.stderr)
-        depths = DEEPEST * scene.diameter * (numpy.arange(1, DEPTHS + 1) / DEPTHS) ** 2
+        depths = SHARES * scene.diameter
         solved = indent(scene, depths, tolerance=REFERENCE)
         good = solved['converged'] & (solved['error_estimate'] <= REFERENCE)
         if good.any():
@@ -223,8 +223,8 @@ def score_force(name, entry, known, solved_in):
         errors.extend(numpy.abs(found[good] / truth[good] - 1))
     cost = numpy.median(costs) if costs else numpy.nan
     even = f'{prepared / max(solved_in - cost, 1e-9):.0f}' if prepared > 0.01 else ''
-    return ('force', name, sum(len(depths) for _, depths, _ in known), *quantiles(errors), failed, f'{1e6 * cost:.2g}',
-            f'{prepared:.3g}', even), errors, cost
+    told = f'{prepared:.3g}' if prepared > 0.01 else ''
+    return 'force', name, sum(len(depths) for _, depths, _ in known), *quantiles(errors), failed, f'{1e6 * cost:.2g}', told, even
 
 
 def score_modulus(name, entry, known, seed):
@@ -263,17 +263,18 @@ def score_policy(name, entry, cells):
             len(cells) - injected, '', '', '')
 
 
-def draw(figures, path):
+def draw(rows, path):
+    """The picture of a table's forces."""
     figure, axes = plt.subplots(figsize=(7, 4.5))
-    for name, (errors, cost) in figures.items():
-        if not errors or not cost > 0:
-            continue
-        errors = numpy.sort(errors)
-        middle = 100 * errors[len(errors) // 2]
-        axes.errorbar([1e6 * cost], [middle], yerr=[[0], [100 * errors[int(0.9 * (len(errors) - 1))] - middle]], fmt='o', capsize=3)
-        axes.annotate(name, (1e6 * cost, middle), textcoords='offset points', xytext=(6, 4))
+    forces = [dict(zip(LINES, row)) for row in rows if row[0] == 'force' and row[3] != '']
+    for number, row in enumerate(sorted(forces, key=lambda row: float(row['us a force']))):
+        cost, middle, common = (float(row[name]) for name in ('us a force', 'median', 'nine of ten'))
+        axes.errorbar([cost], [middle], yerr=[[0], [common - middle]], fmt='o', capsize=3)
+        axes.annotate(row['entry'], (cost, middle), textcoords='offset points', xytext=(8, 4) if number % 2 else (-8, 4),
+                      ha='left' if number % 2 else 'right')
     axes.set_xscale('log')
     axes.set_yscale('log')
+    axes.margins(x=0.12, y=0.1)
     axes.set_xlabel('time of a force (us)')
     axes.set_ylabel('error of the force (%), median and nine of ten')
     axes.grid(True, which='both', alpha=0.2)
@@ -312,13 +313,11 @@ def main():
     begin = time.perf_counter()
     known = references(drawn_scenes(arguments.cells, arguments.seed))
     solved_in = (time.perf_counter() - begin) / max(sum(len(depths) for _, depths, _ in known), 1)
-    rows, figures = [], {}
+    rows = []
     for name, entry in entries.items():
         print(f'field: {name}', file=sys.stderr)
         if hasattr(entry, 'force'):
-            row, errors, cost = score_force(name, entry, known, solved_in)
-            rows.append(row)
-            figures[name] = (errors, cost)
+            rows.append(score_force(name, entry, known, solved_in))
         if hasattr(entry, 'modulus'):
             rows.append(score_modulus(name, entry, known, arguments.seed))
         if hasattr(entry, 'policy'):
@@ -331,7 +330,7 @@ def main():
     widths = [max(len(str(row[i])) for row in [LINES, *rows]) for i in range(len(LINES))]
     for row in [LINES, *rows]:
         print('  '.join(str(cell).ljust(width) for cell, width in zip(row, widths)))
-    draw(figures, arguments.out / 'field.png')
+    draw(rows, arguments.out / 'field.png')
 
 
 if __name__ == '__main__':

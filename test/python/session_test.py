@@ -1,4 +1,5 @@
 """Sessions on virtual time, from Python."""
+import importlib.util
 import subprocess
 import sys
 import threading
@@ -6,9 +7,12 @@ import unittest
 
 import numpy
 
-import cell_microinjection as cm
-from cell_microinjection import gym
-from cell_microinjection import session as sessions
+if importlib.util.find_spec('cell_microinjection._session') is None:
+    raise unittest.SkipTest('needs ROS')
+
+import cell_microinjection as cm  # noqa: E402
+from cell_microinjection import gym  # noqa: E402
+from cell_microinjection import session as sessions  # noqa: E402
 
 LED = ('hand.device:=none', 'injection.mode:=manual')
 

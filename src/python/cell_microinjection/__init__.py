@@ -21,7 +21,7 @@ from cell_microinjection import _core
 from cell_microinjection._core import Calibration, ConfigError, Vision, WriteError, indent, package_folder
 
 __all__ = ['Calibration', 'Cell', 'ConfigError', 'Estimate', 'Identification', 'Measurement', 'Scene', 'Vision', 'WriteError',
-           'find_tip', 'identify', 'indent', 'load_record', 'load_session', 'measure_cell', 'package_folder']
+           'find_tip', 'identify', 'indent', 'load_record', 'measure_cell', 'package_folder']
 __version__ = _core.__version__
 
 
@@ -190,8 +190,11 @@ def find_tip(image, direction=None, config=None):
 
 
 def load_record(path):
-    """@returns a pandas frame of a session's force_depth.csv (doc/reference/commands.md)."""
+    """@returns a pandas frame of a session's force_depth.csv, or of the force over the travel in a ROS bag."""
     import pandas
+    if os.fspath(path).endswith('.bag'):
+        from cell_microinjection.bag import curve_of_bag
+        return pandas.DataFrame(curve_of_bag(path))
     return pandas.read_csv(path)
 
 
