@@ -41,11 +41,13 @@ class Injection:
         import rospy
         from cell_microinjection.msg import InjectionStatus, StringStamped
         self.status = None
+        self.changes = 0  # of the state: a pulse may be over between two looks
         self._stamped = StringStamped
         self._commands = rospy.Publisher('/controller/state_command', StringStamped, queue_size=1)
         rospy.Subscriber('/controller/injection_state', InjectionStatus, self._on_status)
 
     def _on_status(self, message):
+        self.changes += self.status is not None and message.state != self.status.state
         self.status = message
 
     def say(self, command):
@@ -112,15 +114,15 @@ def record(session, recording):
     time.sleep(SETTLE)
     for step in STEPS:
         say(step)
-        before = injection.status.state
+        before = injection.changes
         injection.say(step)
-        end, begun = time.monotonic() + PATIENCE, False
+        end, begun = time.monotonic() + PATIENCE, False  # the state has changed since
         while not (begun and injection.waits()):
             if time.monotonic() > end:
                 raise PicturesError(f'{step} does not end: {injection.status}')
             session.check()
             recording.take(injection.status.state)
-            begun = begun or injection.status.state != before
+            begun = injection.changes > before
             time.sleep(PERIOD)
     recording.take('idle')
     if injection.status.outcome != 'injected':

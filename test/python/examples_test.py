@@ -44,7 +44,9 @@ class TheExamples(unittest.TestCase):
 
     @unittest.skipUnless(HAS_ROS, 'needs ROS')
     def test_detect_a_tip(self):
-        self.assertIn('tip: ', run('detect_a_tip'))
+        said = run('detect_a_tip')
+        self.assertRegex(said, r'tip: (found|uncertain) [\d.]+ [\d.]+ px')
+        self.assertRegex(said, 'cell: (found|uncertain)')
 
     def test_are_short(self):
         for path in EXAMPLES.glob('*.py'):

@@ -159,6 +159,16 @@ class ACellTest(unittest.TestCase):
         tips = live.tips([1e-6, 2e-6])
         numpy.testing.assert_allclose(live.force(tips, along=True)[:, 2], self.CELL.force(tips)[:, 2], rtol=0.25)
 
+    def test_a_live_cell_is_in_equilibrium_however_it_relaxes(self):
+        relaxing = SCENE.replace({'cell/material/viscoelasticity': {'prony': [{'modulus_ratio': 1, 'relaxation_time': 1}]}})
+        tips = self.CELL.tips([0.6e-6, 0.6e-6])
+        forces = cm.Cell(relaxing, 'live').force(tips, along=True)
+        numpy.testing.assert_allclose(forces, cm.Cell(SCENE, 'live').force(tips, along=True), rtol=0.01, atol=1e-13)
+
+    def test_shows_no_surface_where_no_force_is_valid(self):
+        with self.assertRaisesRegex(cm.ConfigError, 'tip: the cell has no valid force'):
+            self.CELL.surface(self.CELL.tips([50e-6], (20e-6, 0))[0])
+
     def test_ctrl_c_ends_a_long_call(self):
         program = ('import os, signal, threading, cell_microinjection as cm\n'
                    'cell = cm.Cell("mouse_oocyte_injection", "live")\n'
@@ -203,8 +213,10 @@ class ARecordTest(unittest.TestCase):
             cm.identify({**record, 'force_nN': record['force_nN'][:-1]}, SCENE)
         with self.assertRaisesRegex(cm.ConfigError, 'force'):
             cm.identify({'position_um': record['position_um'], 'temperature': record['force_nN']}, SCENE)
-        with self.assertRaisesRegex(cm.ConfigError, 'free'):
-            cm.identify(record, SCENE, 'hertz', free=['tip_radius'])
+        for wrong, part in (({'model': 'hertz', 'free': ['tip_radius']}, 'free'), ({'tip_radius': 1e-6}, 'tip_radius'),
+                            ({'prony_terms': -1}, 'prony_terms = -1'), ({'model': 'cone'}, 'model = cone: must be one of')):
+            with self.subTest(part=part), self.assertRaisesRegex(cm.ConfigError, part):
+                cm.identify(record, SCENE, **wrong)
 
 
 class AnImageTest(unittest.TestCase):
@@ -234,6 +246,8 @@ class AnImageTest(unittest.TestCase):
                             (numpy.zeros(4, numpy.uint8), 'shape'), ('x', 'image')):
             with self.subTest(part=part), self.assertRaisesRegex(cm.ConfigError, part):
                 cm.measure_cell(wrong, 1e-6)
+        with self.assertRaisesRegex(cm.ConfigError, 'pixel_size'):
+            cm.measure_cell(numpy.zeros((64, 64), numpy.uint8), -1e-6)
         with self.assertRaisesRegex(cm.ConfigError, 'unknown key'):
             cm.measure_cell(numpy.zeros((64, 64), numpy.uint8), 1e-6, {'eye': 'both'})
 
@@ -283,7 +297,13 @@ class ATaskTest(unittest.TestCase):
             alone.reset(seed=6)
             numpy.testing.assert_array_equal(moved[1], alone.step([0, 0, -1e-5, 0])[0])
             with self.assertRaisesRegex(cm.ConfigError, 'velocity'):
-                both.step([[0, 0, -1, 0]] * 2)
+                both.step([[0, 0, -1, 0], [0, 0, 0, 0]])
+            observations, _ = both.reset([5, 6])  # and no answer to the refused step is left
+            numpy.testing.assert_array_equal(observations[1], first_observation(6))
+            numpy.testing.assert_array_equal(both.reset_one(0, 6)[0], observations[1])
+            for wrong in ([], [5], [5, 6, 7]):
+                with self.assertRaisesRegex(cm.ConfigError, 'of 2 environments'):
+                    both.reset(wrong)
 
     def test_to_press_with_a_force_ends_when_it_is_held(self):
         env = gym.IndentToForce(steps=10)
@@ -294,6 +314,14 @@ class ATaskTest(unittest.TestCase):
             speed = numpy.clip(-20e-6 * (wished - force) / wished, -20e-6, 20e-6)
             observation, _, done, late, _ = env.step([0, 0, speed])
         self.assertTrue(done)
+
+    def test_to_press_cannot_be_done_by_resting(self):
+        for seed in range(20):
+            env = gym.IndentToForce(steps=100)
+            observation, _ = env.reset(seed=seed)
+            self.assertGreaterEqual(observation[-1], 10 * env.RESOLVED)
+            for _ in range(10):
+                self.assertFalse(env.step([0, 0, 0])[2], seed)
 
     def test_refuses_what_is_no_action(self):
         env = gym.Inject()

@@ -67,6 +67,9 @@ class ASessionTest(unittest.TestCase):
             self.assertFalse(session.newest('/controller/loop_state')['follows'])
             with self.assertRaisesRegex(cm.ConfigError, 'no such node'):
                 session.freeze('nobody')
+            for end in (session.kill, session.restart):
+                with self.assertRaisesRegex(cm.ConfigError, "program's own"):
+                    end('python')
 
     def test_says_what_is_wrong(self):
         with self.assertRaisesRegex(cm.ConfigError, 'model = wrong: must be one of'):
@@ -110,6 +113,24 @@ class ASessionTest(unittest.TestCase):
                    'session.run_for(0.1)\nprint("end")\n')
         done = subprocess.run([sys.executable, '-c', program], capture_output=True, text=True, check=False, timeout=60)
         self.assertEqual((done.returncode, done.stdout.splitlines()[-1:]), (0, ['end']), done.stderr)
+
+    def test_waits_end_whatever_the_rest(self):
+        with cm.Session('default', *LED) as session:
+            for start in numpy.linspace(0.01, 0.03, 20):
+                session.run_for(start)
+                with self.assertRaises(cm.SessionError):
+                    session.run_until(lambda: False, limit=0.01, stride=0.003)
+            with self.assertRaisesRegex(cm.ConfigError, 'stride = 0'):
+                session.run_until(lambda: False, limit=0.01, stride=0)
+
+    def test_listens_to_all_after_the_newest(self):
+        with cm.Session('default', *LED) as session:
+            session.newest('/cell/state')
+            session.listen('/cell/state')
+            session.run_for(0.5)
+            self.assertGreater(len(session.take('/cell/state')), 20)
+            with self.assertRaisesRegex(cm.ConfigError, 'comes before take'):
+                session.take('/controller/loop_state')
 
     def test_messages_are_dicts_of_numbers(self):
         with cm.Session('default', *LED) as session:

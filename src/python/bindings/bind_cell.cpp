@@ -2,6 +2,8 @@
 
 #include <pybind11/stl.h>
 
+#include <sstream>
+
 #include "base/atomic_file.h"
 #include "base/errors.h"
 #include "cell/model/contact_frame.h"
@@ -109,6 +111,9 @@ py::dict indentScene(const SceneValue& scene, const py::object& depths, const py
     indenting.lateral = aside;
   }
   if (!speed.is_none()) indenting.speed = speed.cast<double>();
+  if (indenting.speed && !(*indenting.speed > 0 && *indenting.speed < 1))
+    throw ConfigError("speed: must be in (0, 1) m/s");
+  if (!(hold >= 0 && hold < 1e6)) throw ConfigError("hold: must be from 0 to 1e6 s");
   indenting.hold = hold;
   if (!withdrawal.is_none()) {
     const Eigen::VectorXd out = vectorOf("withdrawal", withdrawal);
@@ -117,8 +122,10 @@ py::dict indentScene(const SceneValue& scene, const py::object& depths, const py
   const double diameter = scene.scene().cell.diameter();
   for (std::size_t i = 0; i < indenting.depths.size(); ++i) {
     if (indenting.depths[i] >= 0 && indenting.depths[i] <= diameter) continue;
-    throw ConfigError("depths: value " + std::to_string(i) + " = " + std::to_string(indenting.depths[i]) +
-                      ": must be from 0 to the cell's diameter, " + std::to_string(diameter) + " m");
+    std::ostringstream text;
+    text << "depths: value " << i << " = " << indenting.depths[i] << ": must be from 0 to the cell's diameter, "
+         << diameter << " m";
+    throw ConfigError(text.str());
   }
   if (!(tolerance > 0)) throw ConfigError("tolerance: must be > 0");
   indenting.validate();

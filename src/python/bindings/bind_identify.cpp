@@ -58,9 +58,12 @@ std::shared_ptr<ElasticLaw> lawOf(const std::string& model, const std::optional<
                                   const std::string& families) {
   if (model == "family") {
     if (!scene) throw ConfigError("model = family: needs a scene");
+    if (!tip_radius.is_none()) throw ConfigError("tip_radius: must be left out with model = family: the scene has it");
     return std::make_shared<FamilyLaw>(findFamily(families, scene->scene()), scene->scene(), free);
   }
   if (!free.empty()) throw ConfigError("free: needs model = family");
+  if (model != "hertz" && model != "shell" && model != "membrane")
+    throw ConfigError("model = " + model + ": must be one of: family, hertz, shell, membrane");
   FormulaGeometry geometry = scene ? FormulaGeometry::of(scene->scene()) : FormulaGeometry();
   if (!tip_radius.is_none()) geometry.tip_radius = tip_radius.cast<double>();
   return makeFormulaLaw(model, geometry);
@@ -78,6 +81,8 @@ py::dict identifyRecord(const std::string& path, const std::optional<SceneValue>
   if (drift != "auto" && drift != "on" && drift != "off")
     throw ConfigError("drift = " + drift + ": must be auto, on or off");
   config.drift = drift == "on" ? Drift::kOn : drift == "off" ? Drift::kOff : Drift::kAuto;
+  if (prony_terms < 0 || prony_terms > 3)
+    throw ConfigError("prony_terms = " + std::to_string(prony_terms) + ": must be from 0 to 3");
   config.prony_terms = prony_terms;
   config.intervals = intervals;
   if (model == "family" && prony_terms == 0)

@@ -73,13 +73,12 @@ class Vision {
  public:
   explicit Vision(const YAML::Node& keys) : config_(read(keys)), tracker_(config_.tracker, config_.secondEye()) {}
 
-  const SpecimenView& next(const py::object& image) {
+  SpecimenView next(const py::object& image) {
     const Frame frame(imageOf(image));
     const py::gil_scoped_release others;
     const std::lock_guard<std::mutex> one(mutex_);  // a frame after the other, whatever thread has it
     return tracker_.next(frame);
   }
-  const SpecimenView& view() const { return tracker_.view(); }
 
  private:
   static VisionConfig read(const YAML::Node& keys) {
@@ -118,7 +117,8 @@ void bindVision(py::module_& module) {
       .def(
           "see",
           [](Vision& vision, const py::object& image, double pixel_size) {
-            const SpecimenView& view = vision.next(image);
+            if (!(pixel_size > 0 && pixel_size < 1e-4)) throw ConfigError("pixel_size: must be in (0, 1e-4) m");
+            const SpecimenView view = vision.next(image);
             py::dict result;
             result["cell"] = cellOf(view, pixel_size);
             result["injection_pipette"] = pipetteOf(view.injection);

@@ -46,11 +46,7 @@ ServedForces::ServedForces(std::shared_ptr<const Scene> scene, const std::string
 }
 
 std::string ServedForces::refusal(const Eigen::Vector3d& axis) const {
-  if (live_) {
-    const char* reason = live_->refusal(axis);
-    return reason ? reason : "";
-  }
-  return axis.z() < kUpright ? "must be within 2.5 degrees of (0, 0, 1): the cell was prepared for that only" : "";
+  return axis.z() < kUpright ? "must be within 2.5 degrees of (0, 0, 1): a force is that on an upright needle" : "";
 }
 
 std::optional<std::pair<double, double>> ServedForces::expectedError() const {
@@ -103,7 +99,7 @@ void ServedForces::evaluateLive(const Eigen::Ref<const Eigen::Matrix3Xd>& tips, 
       const Eigen::Vector3d goal = tip - contact->point;
       do {
         progress();
-        solution = contact->path->follow({goal, 0, 0.0, 0});
+        solution = contact->path->follow({goal, 0, std::nullopt, 0});
       } while (solution.converged && solution.tip_displacement != goal);
     }
     put(wanted.forces, i, solution.converged ? solution.force : Eigen::Vector3d::Constant(kNone));
@@ -129,7 +125,7 @@ ServedForces::Surface ServedForces::surface(const Eigen::Vector3d& tip) const {
     const auto path = live_->path(live_->contactAt(point, up));
     IndentationSolution solution;
     do {
-      solution = path->follow({tip - point, 0, 0.0, 0});
+      solution = path->follow({tip - point, 0, std::nullopt, 0});
     } while (solution.converged && solution.tip_displacement != tip - point);
     if (!solution.converged) throw ConfigError("tip: " + solution.reason);
     if (const auto own = path->rest()) {
@@ -140,7 +136,8 @@ ServedForces::Surface ServedForces::surface(const Eigen::Vector3d& tip) const {
     return surface;
   }
   SurrogateContact contact(*scene_, data_);
-  contact.step(tip);
+  const SurrogateContact::Result at = contact.step(tip);
+  if (!at.prepared || at.too_deep) throw ConfigError("tip: the cell has no valid force there, and so no surface");
   Eigen::Matrix3Xd displaced;
   SurrogateContact::surface(*data_, contact.shape(), surface.at_rest, displaced);
   surface.vertices = surface.at_rest + displaced;

@@ -79,16 +79,17 @@ class PySession {
   std::string listen(const std::string& topic, std::uint32_t queue) {
     LocalBus& bus = executive().bus(kNode);
     Heard& heard = heard_[topic];
-    if (heard.type) return heard.type->name;
+    if (heard.type && (heard.queue == 0 || (queue > 0 && queue <= heard.queue))) return heard.type->name;
     const MessageType* type = bus.typeOf(topic);
     if (!type) {
       heard_.erase(topic);
       throw ConfigError("topic = " + topic + ": no node has it; there are: " + join(bus.topics(), ", "));
     }
     heard.type = type;
-    heard.subscription = bus.subscribeAny(*type, topic, queue, [&heard, queue](const RawDelivery& delivery) {
+    heard.queue = queue;  // a larger one than before takes its place
+    heard.subscription = bus.subscribeAny(*type, topic, queue, [&heard](const RawDelivery& delivery) {
       heard.messages.push_back(delivery.message);
-      if (queue > 0 && heard.messages.size() > queue) heard.messages.pop_front();
+      if (heard.queue > 0 && heard.messages.size() > heard.queue) heard.messages.pop_front();
       heard.newest = delivery.message;
     });
     return type->name;
@@ -132,13 +133,21 @@ class PySession {
   void freeze(const std::string& node) { known(node), executive().freeze(node); }
   void thaw(const std::string& node) { known(node), executive().thaw(node); }
   void kill(const std::string& node) { known(node), executive().kill(node); }
-  void restart(const std::string& node) { executive().restart(node); }
+  void restart(const std::string& node) {
+    if (node == kNode) throw ConfigError("node = " + node + ": is this program's own");
+    try {
+      executive().restart(node);
+    } catch (const std::invalid_argument& error) {
+      throw ConfigError("node = " + node + ": " + error.what());
+    }
+  }
   void delay(const std::string& node, double seconds) { known(node), executive().delay(node, seconds); }
 
  private:
   static constexpr double kStride = 0.1;  // s, between two looks at signals
   struct Heard {
     const MessageType* type = nullptr;
+    std::uint32_t queue = 0;  ///< 0: all
     Subscription subscription;
     std::deque<boost::shared_ptr<const void>> messages;
     boost::shared_ptr<const void> newest;
@@ -178,6 +187,7 @@ class PySession {
   }
   void known(const std::string& node) {
     bool runs = false;
+    if (node == kNode) throw ConfigError("node = " + node + ": is this program's own");
     try {
       runs = executive().runs(node);
     } catch (const std::invalid_argument&) {  // there is none of this name

@@ -69,6 +69,7 @@ class Cell(_core.Cell):
     def __init__(self, scene, model='auto', families=None):
         """scene: a Scene, a path or a name of config/cells. model: auto, surrogate or live. families: a folder."""
         self.scene = scene if isinstance(scene, _core.Scene) else Scene.load(scene)
+        self._families = families
         super().__init__(self.scene, model, families)
 
     def tips(self, depths, lateral=(0, 0)):
@@ -78,7 +79,7 @@ class Cell(_core.Cell):
         return touch - depths[:, None] * numpy.array([0.0, 0.0, 1.0])
 
     def __reduce__(self):
-        return Cell, (self.scene, self.model)
+        return Cell, (self.scene, self.model, self._families)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -118,7 +119,7 @@ def identify(record, scene=None, model=None, *, free=(), tip_radius=None, drift=
     record: the path of a table as an instrument wrote it; a pandas frame with such columns; or a dict of arrays, such as
         {'time_s': t, 'position_um': z, 'force_nN': f}.
     scene: a Scene, a path or a name, whose sizes hold and whose modulus is searched. model: family (with a scene),
-    hertz, cone, shell or membrane. free: ratios of the family to find, too.
+    hertz, shell or membrane. free: ratios of the family to find, too.
     @returns an Identification
     @raises ConfigError where there is no contact in the record, or a column cannot be found
     """
@@ -179,7 +180,7 @@ def measure_cell(image, pixel_size, config=None):
 def find_tip(image, direction=None, config=None):
     """Finds the injection pipette's tip in an image.
 
-    direction: rad in the image, from the tip towards the shaft, from x (right) towards y (down); None: any.
+    direction: rad in the image, from the tip towards the shaft, from x (right) towards y (down); None: any, or with the eyes `geometry` -1.5708.
     @returns a dict: verdict, reason and, unless the verdict is 'not found', place (x, y) and covariance in px,
         direction and half_width
     """

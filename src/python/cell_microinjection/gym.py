@@ -125,6 +125,8 @@ class IndentToForce(_Trial):
     def reset(self, *, seed=None, options=None):
         """@returns (observation, info)"""
         observation, info = super().reset(seed=seed, options=options)
+        while not options and self._wished < 10 * self.RESOLVED:  # another cell: the sensor would not feel this one's
+            observation, info = super().reset()
         return numpy.append(observation, self._wished), info
 
     def _begin(self, observation):
@@ -153,6 +155,7 @@ class ApproachByImage:
     """
 
     metadata, render_mode = {'render_modes': []}, None
+    observation_space = None  # of the image, from reset() on
     action_space = Box(-50e-6, 50e-6, (2,))
     PERIOD, SAY, NEAR, ABOVE, LONGEST = 1 / 30, 5e-3, 3e-6, 10e-6, 20.0
 
@@ -172,6 +175,7 @@ class ApproachByImage:
         for topic in ('/needle/measured_cp', '/cell/state', '/microscope/image_raw'):
             self._session.newest(topic)
         self._session.run_for(0.5)
+        self.observation_space = Box(0, 255, self._session.image().shape)
         self._target = dict(self._session.newest('/needle/measured_cp')['pose']['position'])
         radius = self._session.newest('/cell/state')['layer_radii'][0]
         self._goal = numpy.array([0.0, radius + self.ABOVE])
@@ -234,6 +238,8 @@ class Vector:
 
     def __init__(self, make, count):
         context = multiprocessing.get_context('spawn')
+        if count < 1:
+            raise _core.ConfigError(f'count = {count}: must be at least 1')
         self._pipes, self._processes = [], []
         for _ in range(count):
             here, there = context.Pipe()
@@ -251,16 +257,17 @@ class Vector:
 
     def reset(self, seeds):
         """@returns (observations, (n, m); infos)"""
-        for pipe, seed in zip(self._pipes, seeds):
-            pipe.send(('reset', {'seed': seed}))
-        observations, infos = zip(*(self._answer(pipe) for pipe in self._pipes))
+        observations, infos = zip(*self._ask('reset', [{'seed': seed} for seed in seeds]))
         return numpy.array(observations), list(infos)
 
+    def reset_one(self, index, seed):
+        """Another cell for one that is over. @returns (observation, info)"""
+        self._pipes[index].send(('reset', {'seed': seed}))
+        return self._raise(self._pipes[index].recv())
+
     def step(self, actions):
-        """@returns (observations, rewards, terminated, truncated, infos); one that is over must be reset"""
-        for pipe, action in zip(self._pipes, actions):
-            pipe.send(('step', action))
-        answers = [self._answer(pipe) for pipe in self._pipes]
+        """@returns (observations, rewards, terminated, truncated, infos); one that is over needs reset_one()"""
+        answers = self._ask('step', actions)
         return (*(numpy.array([answer[i] for answer in answers]) for i in range(4)), [answer[4] for answer in answers])
 
     def close(self):
@@ -274,9 +281,17 @@ class Vector:
             process.join(5)
             process.kill()
 
+    def _ask(self, word, values):
+        if len(values) != len(self._pipes):
+            raise _core.ConfigError(f'{len(values)} of {len(self._pipes)} environments are told: must be all')
+        for pipe, value in zip(self._pipes, values):
+            pipe.send((word, value))
+        answers = [pipe.recv() for pipe in self._pipes]  # all, before one of them is raised
+        return [self._raise(answer) for answer in answers]
+
     @staticmethod
-    def _answer(pipe):
-        good, value = pipe.recv()
+    def _raise(answer):
+        good, value = answer
         if not good:
             raise value
         return value

@@ -69,9 +69,11 @@ class Session:
 
     def run_until(self, done, limit, stride=0.01):
         """Runs until done(), which is asked each `stride` s. @raises SessionError after `limit` s"""
+        if not stride > 0:
+            raise ConfigError(f'stride = {stride}: must be > 0 s')
         end = self.time + limit
         while not done():
-            if self.time >= end:
+            if self.time >= end - 1e-9:
                 raise SessionError(f'nothing came of it within {limit} s of the session')
             self._session.run_for(min(stride, end - self.time))
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Finds cell and tip in the virtual microscope's image, and brings the needle down until the image shows the touch."""
+"""Finds the cell and the needle's tip in the virtual microscope's image."""
 from cell_microinjection import Session, find_tip, measure_cell
 
 
