@@ -53,7 +53,7 @@ def seen_session(logs, size, keys, start_view):
     @returns (DemoSession, Screen)
     @raises SessionError"""
     with contextlib.ExitStack() as stack:
-        screen = Screen(logs / 'xvfb.log', size)
+        screen = Screen(logs / 'xvfb.log', size, logs)
         stack.callback(screen.close)
         session = DemoSession(ROOT / 'launch/session.launch', logs, keys)
         stack.callback(session.stop)

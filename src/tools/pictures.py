@@ -14,14 +14,13 @@ import time
 from pathlib import Path
 
 import console_pictures
-import screenshot
 from demo_session import SessionError
 from processes import Child, wait_until
 
 ROOT = Path(os.environ.get('MICROINJECTION_ROOT') or Path(__file__).resolve().parents[2])
 SIZE = (1280, 800)    # px
 MENU = 62             # px above the panels
-PERIOD = 0.3          # s of wall time between two frames, at least
+PERIOD = 0.12         # s of wall time between two frames, at least
 SLOW = {'stab_speed': 2.0e-5, 'retract_speed': 8.0e-5}  # m/s, or nobody sees the stab
 LARGEST = 3e6         # bytes, of the animation
 PAUSE = '200'         # hundredths of a second, of its last frame
@@ -60,17 +59,19 @@ class Injection:
 class Recording:
     """Frames of the whole display."""
 
-    def __init__(self, folder, environment):
+    def __init__(self, folder, screen):
+        """screen: the file in which Xvfb keeps its picture: a copy takes milliseconds, where a program that asks the server
+        for it takes as long as a step of the injection."""
         self.frames = []  # of (state, path)
         self._begin = self._end = None  # s of wall time
-        self._folder, self._environment = folder, environment
+        self._folder, self._screen = folder, screen
 
     def take(self, state):
         self._end = time.monotonic()
         self._begin = self._begin or self._end
-        path = self._folder / f'{len(self.frames):03}.png'
-        if screenshot.take(path, env=self._environment):
-            self.frames.append((state, path))
+        path = self._folder / f'{len(self.frames):03}.xwd'
+        shutil.copyfile(self._screen, path)
+        self.frames.append((state, path))
 
     def last_of(self, state):
         """@raises PicturesError when no frame was taken in this state."""
@@ -82,7 +83,7 @@ class Recording:
     def animate(self, path):
         """@raises PicturesError when the animation is too large or convert fails."""
         period = (self._end - self._begin) / max(1, len(self.frames) - 1)
-        frames = [str(frame) for _, frame in self.frames]
+        frames = [f'xwd:{frame}' for _, frame in self.frames]
         command = ['convert', '-loop', '0', '-delay', str(round(100 * period)), *frames[:-1], '-delay', PAUSE, frames[-1], '-crop',
                    f'{SIZE[0]}x{SIZE[1] - MENU - 20}+0+{MENU}', '+repage', '-resize', '68%', '+dither', '-colors', '48',
                    '-layers', 'optimize', str(path)]
@@ -140,12 +141,12 @@ def console(out, logs):
     def start_view(environment):
         return Child(command, logs / 'rviz.log', {**os.environ, **environment})
 
-    with console_pictures.seen_session(logs, SIZE, keys, start_view) as (session, screen):
+    with console_pictures.seen_session(logs, SIZE, keys, start_view) as (session, _):
         session.monitor.go()
-        recording = Recording(Path(tempfile.mkdtemp(dir=logs)), screen.environment)
+        recording = Recording(Path(tempfile.mkdtemp(dir=logs)), logs / 'Xvfb_screen0')
         record(session, recording)
     recording.animate(logs / 'injection.gif')
-    shutil.copyfile(recording.last_of('indent'), out / 'console.png')
+    subprocess.run(['convert', f"xwd:{recording.last_of('indent')}", str(out / 'console.png')], check=True, timeout=60)
     shutil.copyfile(logs / 'injection.gif', out / 'injection.gif')
 
 
