@@ -20,24 +20,6 @@ double mixedModulus(double lambda, const Lame& lame) {
   return std::max(lambda, std::min(lame.mu, 0.5 * bulk));
 }
 
-using Factory = std::unique_ptr<Material> (*)(const Lame&, const MaterialConfig&);
-
-template <typename Model>
-std::unique_ptr<Material> make(const Lame& lame, const MaterialConfig&) {
-  return std::make_unique<Model>(lame);
-}
-
-std::unique_ptr<Material> makeMooneyRivlin(const Lame& lame, const MaterialConfig& config) {
-  return std::make_unique<MooneyRivlin>(lame, config.mooney_ratio);
-}
-
-const std::pair<const char*, Factory> kModels[] = {{"linear", make<LinearMaterial>},
-                                                   {"st_venant_kirchhoff", make<StVenantKirchhoff>},
-                                                   {"neo_hookean", make<NeoHookean>},
-                                                   {"mooney_rivlin", makeMooneyRivlin},
-                                                   {"stable_neo_hookean", make<StableNeoHookean>},
-                                                   {"corotated", make<Corotated>}};
-
 }  // namespace
 
 Material::Material(double lambda, const Lame& lame)
@@ -73,7 +55,7 @@ Material::Matrix9d Material::tangent(const Kinematics& kinematics, const Weights
 const std::vector<std::string>& materialModels() {
   static const std::vector<std::string> models = [] {
     std::vector<std::string> names;
-    for (const auto& [name, factory] : kModels) names.emplace_back(name);
+    for (const auto& [name, factory] : materialFactories()) names.emplace_back(name);
     return names;
   }();
   return models;
@@ -99,7 +81,7 @@ void MaterialConfig::validate() const {
 std::unique_ptr<Material> makeMaterial(const MaterialConfig& config) {
   config.validate();
   const Lame lame = Lame::from(config.young_modulus, config.poisson_ratio);
-  for (const auto& [name, factory] : kModels) {
+  for (const auto& [name, factory] : materialFactories()) {
     if (config.model == name) return factory(lame, config);
   }
   return nullptr;  // not reached: the configuration is valid
