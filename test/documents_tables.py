@@ -91,7 +91,7 @@ def check_commands(project, text):
     """Every ./dev command and option of our programs is in commands.md."""
     problems = check_arguments(project, text)
     problems += [f'./dev {name} is not in the table' for name in project.dev if f'`./dev {name}' not in text]
-    for program in ('indent', 'prepare', 'trajectory_error', 'emulate', 'measure_cell', 'session'):
+    for program in ('aspirate', 'indent', 'prepare', 'trajectory_error', 'emulate', 'measure_cell', 'session'):
         hidden = {'--help', '--ray', '--at', '--member', '--axis', '--check'}
         rows = table_rows(text, program)
         problems += [f'{program} {option} is not in the table' for option in sorted(project.programs[program] - hidden)

@@ -115,7 +115,7 @@ def section(data_dir, out_dir):
         'Coulomb\'s friction '
         'and sticking; adhesion `needle/contact/adhesion: {energy: 2e-3, range: 0.5e-6}` (J/m^2 and m), a traction '
         'that pulls '
-        'what has touched over a gap (`contact/tip_contact.h`); one Prony term of half the modulus and 0.2 s. All '
+        'what has touched over a gap (`contact/rigid_contact.h`); one Prony term of half the modulus and 0.2 s. All '
         'assumed.',
         '![in and out](withdrawal.png)',
         table(('', 'work lost (fJ)', 'strongest pull (nN)', 'at (um)'), lines),

@@ -11,12 +11,12 @@ namespace microinjection {
 
 namespace po = boost::program_options;
 
-bool readCommandLine(const std::vector<std::string>& words, const po::options_description& options,
-                     const std::string& help, po::variables_map& given, const std::string& positional, int most) {
-  po::positional_options_description places;
-  if (!positional.empty()) places.add(positional.c_str(), most);
+namespace {
+
+bool read(po::command_line_parser& parser, const po::options_description& options, const std::string& help,
+          po::variables_map& given) {
   try {
-    po::store(po::command_line_parser(words).options(options).positional(places).run(), given);
+    po::store(parser.run(), given);
     po::notify(given);
   } catch (const po::error& error) {
     throw ConfigError(error.what());
@@ -27,6 +27,22 @@ bool readCommandLine(const std::vector<std::string>& words, const po::options_de
     flushStandardOutput();
   }
   return !asks;
+}
+
+}  // namespace
+
+bool readCommandLine(const std::vector<std::string>& words, const po::options_description& options,
+                     const std::string& help, po::variables_map& given, const std::string& positional, int most) {
+  po::positional_options_description places;
+  if (!positional.empty()) places.add(positional.c_str(), most);
+  return read(po::command_line_parser(words).options(options).positional(places), options, help, given);
+}
+
+bool readLongOptions(const std::vector<std::string>& words, const po::options_description& options,
+                     po::variables_map& given) {
+  using Style = po::command_line_style::style_t;
+  const int style = Style::allow_long | Style::long_allow_adjacent | Style::long_allow_next;
+  return read(po::command_line_parser(words).options(options).style(style).positional({}), options, "", given);
 }
 
 std::vector<std::string> wordsOf(int argc, char** argv) { return {argv + 1, argv + argc}; }

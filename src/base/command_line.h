@@ -18,6 +18,10 @@ bool readCommandLine(const std::vector<std::string>& words, const boost::program
                      const std::string& help, boost::program_options::variables_map& given,
                      const std::string& positional = "", int most = 1);
 
+/// The same without short options and without words, so that -1e-6 is a value.
+bool readLongOptions(const std::vector<std::string>& words, const boost::program_options::options_description& options,
+                     boost::program_options::variables_map& given);
+
 /// argv without the program's name.
 std::vector<std::string> wordsOf(int argc, char** argv);
 

@@ -46,6 +46,7 @@ inline constexpr PlausibleRange kViscosity{"Pa s", {0, 1e6}};
 inline constexpr PlausibleRange kRelaxationTime{"s", {1e-6, 1e6}};
 inline constexpr PlausibleRange kTime{"s", {0, 1e6}};
 inline constexpr PlausibleRange kSpeed{"m/s", {1e-10, 1}};
+inline constexpr PlausibleRange kSuction{"Pa", {-101325, 0}};  ///< gauge: from a vacuum to none
 inline constexpr PlausibleRange kStrain{"", {1e-4, 10}};
 
 }  // namespace plausible

@@ -2,13 +2,11 @@
 
 #include <cmath>
 #include <cstdio>
-#include <iostream>
 #include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "base/atomic_file.h"
 #include "base/command_line.h"
 #include "base/errors.h"
 #include "base/exit_status.h"
@@ -47,10 +45,7 @@ std::string csvRow(const ForcePoint& point) {
 
 int run(int argc, char** argv) {
   const std::optional<IndentArguments> parsed = parseIndentArguments(argc, argv);
-  if (!parsed) {
-    flushStandardOutput();  // the help
-    return kConverged;
-  }
+  if (!parsed) return kConverged;  // the help
   const IndentArguments& arguments = *parsed;
   const Scene scene = loadScene(arguments.scene);
   const std::vector<ForcePoint> points = solveIndentation(scene, arguments);
@@ -67,12 +62,7 @@ int run(int argc, char** argv) {
       status = kNotAccurate;
     }
   }
-  if (arguments.csv == "-") {
-    std::cout << table;
-    flushStandardOutput();
-  } else {
-    writeFileAtomically(arguments.csv, table);
-  }
+  writeTable(arguments.csv, table);
   return status;
 }
 

@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <boost/program_options.hpp>
 #include <cmath>
-#include <iostream>
-#include <limits>
 
+#include "base/command_line.h"
 #include "base/config_errors.h"
 #include "base/errors.h"
 #include "base/output_files.h"
-#include "base/separated.h"
+#include "commands/number_arguments.h"
 
 namespace microinjection {
 namespace {
@@ -46,24 +45,6 @@ depth did not converge (its row is written); 4 all converged, but some depth not
 
 Options)";
 
-std::vector<double> parseNumbers(const std::string& option, const std::string& text, const std::string& wanted) {
-  std::vector<double> numbers;
-  for (const std::string& item : separated(text)) {
-    std::size_t used = 0;
-    double number = std::numeric_limits<double>::quiet_NaN();
-    try {
-      number = std::stod(item, &used);
-    } catch (const std::exception&) {
-      used = std::string::npos;
-    }
-    if (used != item.size() || !std::isfinite(number)) {
-      throw ConfigError("--" + option + " = " + text + ": '" + item + "' is not a number; must be " + wanted);
-    }
-    numbers.push_back(number);
-  }
-  return numbers;
-}
-
 std::vector<double> parseDepths(const std::string& text) {
   const std::string wanted = "numbers >= 0 (m) separated by commas";
   std::vector<double> depths = parseNumbers("depths", text, wanted);
@@ -78,15 +59,6 @@ Eigen::Vector2d parseLateral(const std::string& text) {
   const std::vector<double> xy = parseNumbers("lateral", text, wanted);
   if (xy.size() != 2) throw ConfigError("--lateral = " + text + ": must be " + wanted);
   return {xy[0], xy[1]};
-}
-
-double parsePositive(const std::string& option, const std::string& text, const std::string& unit, bool zero = false) {
-  const std::string wanted = std::string("a number ") + (zero ? ">= 0" : "> 0") + unit;
-  const std::vector<double> numbers = parseNumbers(option, text, wanted);
-  if (numbers.size() != 1 || numbers[0] < 0 || (!zero && numbers[0] == 0)) {
-    throw ConfigError("--" + option + " = " + text + ": must be " + wanted);
-  }
-  return numbers[0];
 }
 
 /// Index of a name. Throws ConfigError that lists all names.
@@ -165,16 +137,8 @@ std::optional<IndentArguments> parseIndentArguments(int argc, char** argv) {
       "s that the tip rests at each depth before its force is computed")(
       "time", po::value(&texts.time)->default_value("600"), "s after which no third or finer mesh is started")(
       "csv", po::value(&arguments.csv)->default_value("-"), "file to write; - is the standard output");
-  // Short options are off, so that -1e-6 is a value.
-  using Style = po::command_line_style::style_t;
-  const int style = Style::allow_long | Style::long_allow_adjacent | Style::long_allow_next;
   po::variables_map values;
-  po::store(po::command_line_parser(argc, argv).options(options).style(style).positional({}).run(), values);
-  po::notify(values);
-  if (values.count("help") != 0) {
-    std::cout << options;
-    return std::nullopt;
-  }
+  if (!readLongOptions(wordsOf(argc, argv), options, values)) return std::nullopt;
   if (values.count("scene") == 0) throw ConfigError("--scene is missing: a scene file, see --help");
   if (values.count("depths") == 0) throw ConfigError("--depths is missing: for example 1e-6,2e-6 (m), see --help");
   for (const auto& [name, value] : values) {

@@ -40,7 +40,8 @@ class SceneReader {
     facts.modulus = is_tensegrity ? CellFacts::kModulus : feltModulus(layers);
     facts.puncture_force = readPunctureForce();
     facts.tip_radius = positive(plausible::kTipRadius, "needle/tip/radius");
-    facts.mouth_radius = optional("holding_pipette/contact_radius");
+    const bool is_glued = !parameterAt(scene_, "holding_pipette/mouth").IsDefined();
+    facts.mouth_radius = optional(is_glued ? "holding_pipette/contact_radius" : "holding_pipette/mouth/inner_radius");
     if (!errors_.empty()) throw ConfigError(errors_);
     return facts;
   }

@@ -3,14 +3,9 @@
 #include <Eigen/Core>
 #include <string>
 
-namespace microinjection {
+#include "cell/contact/rigid_surface.h"
 
-/// Distance of a point from the surface of a tip, with its derivatives.
-struct Gap {
-  double distance = 0;                                  ///< m, > 0 outside of the tip
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();     ///< gradient of the distance: unit, out of the tip
-  Eigen::Matrix3d curvature = Eigen::Matrix3d::Zero();  ///< its Hessian, 1/m; symmetric, curvature * normal = 0
-};
+namespace microinjection {
 
 /// Rigid axisymmetric pipette with a rounded end: all points within `edge_radius` e of a solid
 /// core. The core is a cylinder of radius c = radius - e about the axis without an upper end. The
@@ -27,10 +22,8 @@ struct Gap {
 ///
 /// A scene has rounded tips because the paper's sharp disc folds the surface under its edge: a neo-Hookean cell has a
 /// converged force to 8 um there (elements of 0.4 um at the edge), and to 45 um under a hemisphere
-/// (doc/reference/benchmarks.md, Where a converged force ends). The surface is given by its exact distance, not by
-/// triangles: Newton's method needs gap, normal and curvature of a contact, and facets would make the normal jump
-/// at each of their edges while the cell slides over them.
-class RoundedTip {
+/// (doc/reference/benchmarks.md, Where a converged force ends).
+class RoundedTip : public RigidSurface {
  public:
   /// 0 < edge_radius <= radius, m; throws ConfigError otherwise.
   RoundedTip(double radius, double edge_radius);
@@ -46,13 +39,14 @@ class RoundedTip {
   /// Signed distance to the surface, m, exact everywhere. Once continuously differentiable outside,
   /// and inside down to the depth e. Deeper, inside of the core, it has kinks where two faces are
   /// equally near.
-  double distance(const Eigen::Vector3d& point) const;
+  double distance(const Eigen::Vector3d& point) const override;
 
   /// distance() with its derivatives. In the core the normal points out through the nearest face.
   /// All values are finite: where the curvature is not defined (on the core's corner, on the axis
   /// deep in the shaft) it is large, and the normal is one of the possible ones. The curvature
   /// jumps between regions.
-  Gap gap(const Eigen::Vector3d& point) const;
+  Gap gap(const Eigen::Vector3d& point) const override;
+  double size() const override { return radius(); }
 
   /// Height, m, of the tip's lowest point when the tip, moving down along z with its axis through
   /// (x, y) = `offset`, first touches a sphere of `cell_radius` about the origin. NaN when it

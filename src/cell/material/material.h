@@ -26,8 +26,8 @@ namespace microinjection {
 /// split would turn the linear and the St-Venant-Kirchhoff law, which is the paper's, into other materials.
 ///
 /// Strain and stress are those of space in every element: a section has F in the directions (r, theta, z), so that a
-/// material is written once. The scene chooses it by name for each layer, hence a virtual interface. material_models.cpp
-/// has the models with their sources, doc/maintain/material.md the way to a new one.
+/// material is written once. The scene chooses it by name for each layer, hence a virtual interface.
+/// material_models.cpp has the models with their sources, doc/maintain/material.md the way to a new one.
 ///
 /// Matrices of 9 x 9: row and column i + 3 J stand for component (i, J), the column-major order of
 /// Eigen; symmetric. Stresses and tangents: @pre energyDensity(F) is finite.

@@ -5,24 +5,15 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "cell/material/volume.h"
-#include "cell/mechanics/reference_element.h"
 
 namespace microinjection {
 namespace {
 
-/// tension times area minus pressure times volume per unit of the reference facet, as a function of
-/// the position and the tangents there, in this order (Dim^2 numbers).
-template <int Dim>
-struct Density {
-  double value = 0;
-  Eigen::Matrix<double, Dim * Dim, 1> gradient = Eigen::Matrix<double, Dim * Dim, 1>::Zero();
-  Eigen::Matrix<double, Dim * Dim, Dim* Dim> hessian = Eigen::Matrix<double, Dim * Dim, Dim * Dim>::Zero();
-};
-
 /// Area |a1 x a2| = sqrt(g) with the metric's determinant g. False when it vanishes.
-bool addArea(const Eigen::Matrix3d& at, double tension, Density<3>& density) {
+bool addArea(const Eigen::Matrix3d& at, double tension, SurfaceDensity<3>& density) {
   const Eigen::Vector3d a1 = at.col(1), a2 = at.col(2);
   const double g11 = a1.squaredNorm(), g22 = a2.squaredNorm(), g12 = a1.dot(a2);
   const double area = a1.cross(a2).norm();
@@ -41,7 +32,7 @@ bool addArea(const Eigen::Matrix3d& at, double tension, Density<3>& density) {
 }
 
 /// Volume 1/3 x . (a1 x a2) of the cone from the origin.
-void addVolume(const Eigen::Matrix3d& at, double pressure, Density<3>& density) {
+void addVolume(const Eigen::Matrix3d& at, double pressure, SurfaceDensity<3>& density) {
   const Eigen::Vector3d x = at.col(0), a1 = at.col(1), a2 = at.col(2);
   const double factor = -pressure / 3;
   density.value += factor * x.dot(a1.cross(a2));
@@ -55,7 +46,7 @@ void addVolume(const Eigen::Matrix3d& at, double pressure, Density<3>& density) 
 }
 
 /// Area 2 pi r |t|, t the tangent. False when it vanishes or the axis is crossed.
-bool addArea(const Eigen::Matrix2d& at, double tension, Density<2>& density) {
+bool addArea(const Eigen::Matrix2d& at, double tension, SurfaceDensity<2>& density) {
   const double r = at(0, 0), length = at.col(1).norm(), factor = 2 * M_PI * tension;
   if (!(r > 0) || !(length > 0)) return false;
   const Eigen::Vector2d direction = at.col(1) / length;
@@ -70,7 +61,7 @@ bool addArea(const Eigen::Matrix2d& at, double tension, Density<2>& density) {
 }
 
 /// Volume pi r^2 dz of a slice.
-void addVolume(const Eigen::Matrix2d& at, double pressure, Density<2>& density) {
+void addVolume(const Eigen::Matrix2d& at, double pressure, SurfaceDensity<2>& density) {
   const double r = at(0, 0), dz = at(1, 1), factor = -pressure * M_PI;
   density.value += factor * r * r * dz;
   density.gradient[0] += factor * 2 * r * dz;
@@ -84,96 +75,39 @@ void addVolume(const Eigen::Matrix2d& at, double pressure, Density<2>& density) 
 
 template <int Dim>
 SurfaceTension<Dim>::SurfaceTension(const LayeredBody<Dim>& body, int layer, double radius, double tension)
-    : tension_(tension), pressure_(2 * tension / radius) {
+    : tension_(tension), pressure_(2 * tension / radius), surface_(body) {
   if (!(radius > 0)) throw std::invalid_argument("radius " + std::to_string(radius) + " must be positive");
   if (!(tension >= 0)) throw std::invalid_argument("tension " + std::to_string(tension) + " must not be negative");
-  const bool quadratic = isQuadratic(body.kind());
-  for (const ReferenceElement::Point& at : referenceFacet<Dim>().points) {
-    Point point;
-    point.weight = at.weight;
-    point.shape.resize(quadratic ? kMostNodes : Dim, Dim);
-    if (quadratic) {
-      point.shape << at.shape, at.gradient;
-    } else {
-      point.shape << at.barycentric, Eigen::Matrix<double, Dim, Dim - 1>::Zero();
-      point.shape.template block<1, Dim - 1>(0, 1).setConstant(-1);
-      point.shape.template bottomRightCorner<Dim - 1, Dim - 1>().setIdentity();
-    }
-    points_.push_back(point);
-  }
   for (const auto& facet : body.mesh().facets) {
-    if (facet.layer == layer) addFacet(body, facet);
+    if (facet.layer != layer) continue;
+    Facet result{surface_.facet(body, facet), 0, {}};
+    LocalEnergy undeformed;
+    if (!integrate(result.undeformed, tension_, pressure_, Order::kGradient, undeformed)) {
+      throw std::invalid_argument("facet " + std::to_string(facets_.size()) + " of layer " + std::to_string(layer) +
+                                  " has no area");
+    }
+    result.energy = undeformed.energy;
+    result.dead_load = undeformed.gradient;
+    facets_.push_back(std::move(result));
   }
   if (facets_.empty()) throw std::invalid_argument("the body has no surface of layer " + std::to_string(layer));
 }
 
 template <int Dim>
-void SurfaceTension<Dim>::addFacet(const LayeredBody<Dim>& body, const typename QuadraticMesh<Dim>::Facet& facet) {
-  const int nodes = static_cast<int>(points_[0].shape.rows());
-  Facet result;
-  result.undeformed.resize(Dim, nodes);
-  for (int a = 0; a < nodes; ++a) {
-    result.undeformed.col(a) = body.mesh().nodes[facet.nodes[a]];
-    for (int k = 0; k < Dim; ++k) result.entries.push_back(Dim * facet.nodes[a] + k);
-  }
-  LocalEnergy undeformed;
-  if (!integrate(result.undeformed, tension_, pressure_, Order::kGradient, undeformed)) {
-    throw std::invalid_argument("facet " + std::to_string(facets_.size()) + " of layer " + std::to_string(facet.layer) +
-                                " has no area");
-  }
-  result.energy = undeformed.energy;
-  result.dead_load = undeformed.gradient;
-  facets_.push_back(std::move(result));
-}
-
-template <int Dim>
-typename SurfaceTension<Dim>::Positions SurfaceTension<Dim>::positions(const Facet& facet,
-                                                                       const Eigen::VectorXd& state) const {
-  Positions x = facet.undeformed;
-  for (int i = 0; i < x.size(); ++i) x.data()[i] += state[facet.entries[i]];
-  return x;
-}
-
-/// Sums over one facet's quadrature points.
-template <int Dim>
 bool SurfaceTension<Dim>::integrate(const Positions& x, double tension, double pressure, Order order,
                                     LocalEnergy& result) const {
-  const int nodes = static_cast<int>(x.cols()), size = Dim * nodes;
-  result.zero = false;
-  result.energy = 0;
-  if (order != Order::kEnergy) result.gradient.setZero(size);
-  if (order == Order::kHessian) result.hessian.setZero(size, size);
-  for (const Point& point : points_) {
-    const Eigen::Matrix<double, Dim, Dim> at = x * point.shape;
-    Density<Dim> density;
+  const auto add = [&](const auto& at, SurfaceDensity<Dim>& density) {
     if (!addArea(at, tension, density)) return false;
     addVolume(at, pressure, density);
-    result.energy += point.weight * density.value;
-    for (int a = 0; order != Order::kEnergy && a < nodes; ++a) {
-      for (int i = 0; i < Dim; ++i) {
-        const double share = point.weight * point.shape(a, i);
-        result.gradient.template segment<Dim>(Dim * a) += share * density.gradient.template segment<Dim>(Dim * i);
-      }
-      if (order != Order::kHessian) continue;
-      Eigen::Matrix<double, Dim, Dim* Dim> row = Eigen::Matrix<double, Dim, Dim * Dim>::Zero();
-      for (int i = 0; i < Dim; ++i) {
-        row += point.weight * point.shape(a, i) * density.hessian.template middleRows<Dim>(Dim * i);
-      }
-      for (int b = 0; b < nodes; ++b) {
-        for (int j = 0; j < Dim; ++j) {
-          result.hessian.template block<Dim, Dim>(Dim * a, Dim * b) +=
-              point.shape(b, j) * row.template middleCols<Dim>(Dim * j);
-        }
-      }
-    }
-  }
-  return std::isfinite(result.energy);
+    return true;
+  };
+  return surface_.integrate(x, order, add, result);
 }
 
 template <int Dim>
 bool SurfaceTension<Dim>::evaluate(int index, const Eigen::VectorXd& state, Order order, LocalEnergy& result) const {
   const Facet& facet = facets_[index];
-  const Positions x = positions(facet, state);
+  const Positions x = surface_.positions(facet, state);
   if (!integrate(x, tension_, pressure_, order, result)) return false;
   const Positions u = x - facet.undeformed;
   result.energy -= facet.energy + facet.dead_load.dot(Eigen::Map<const Eigen::VectorXd>(u.data(), u.size()));
@@ -186,7 +120,7 @@ double SurfaceTension<Dim>::total(const Eigen::VectorXd& state, double tension, 
   double sum = 0;
   LocalEnergy local;
   for (const Facet& facet : facets_) {
-    const bool defined = integrate(positions(facet, state), tension, pressure, Order::kEnergy, local);
+    const bool defined = integrate(surface_.positions(facet, state), tension, pressure, Order::kEnergy, local);
     sum += defined ? local.energy : std::numeric_limits<double>::quiet_NaN();
   }
   return sum;

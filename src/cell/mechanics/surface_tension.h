@@ -5,6 +5,7 @@
 
 #include "cell/mechanics/energy_term.h"
 #include "cell/mechanics/layered_body.h"
+#include "cell/mechanics/surface_integral.h"
 
 namespace microinjection {
 
@@ -21,9 +22,7 @@ namespace microinjection {
 /// are subtracted as a dead load, which makes the undeformed state an exact equilibrium, and vanish
 /// with the size of the facets.
 ///
-/// In a section (Dim = 2) area and volume are those of the whole surface of revolution. The surface
-/// has the order of the body's displacement: quadratic (curved facets) or linear (flat ones between
-/// vertices).
+/// In a section (Dim = 2) area and volume are those of the whole surface of revolution.
 template <int Dim>
 class SurfaceTension : public EnergyTerm {
  public:
@@ -43,28 +42,18 @@ class SurfaceTension : public EnergyTerm {
   bool evaluate(int facet, const Eigen::VectorXd& state, Order order, LocalEnergy& result) const override;
 
  private:
-  static constexpr int kMostNodes = QuadraticMesh<Dim>::kFacetNodes;
-  using Positions = Eigen::Matrix<double, Dim, Eigen::Dynamic, Eigen::ColMajor, Dim, kMostNodes>;  ///< m, node by node
-  struct Point {
-    double weight;
-    /// Row of a node: its shape function and its derivatives by the reference coordinates.
-    Eigen::Matrix<double, Eigen::Dynamic, Dim> shape;
-  };
-  struct Facet {
-    std::vector<int> entries;  ///< node by node
-    Positions undeformed;
+  using Positions = typename SurfaceIntegral<Dim>::Positions;
+  struct Facet : SurfaceIntegral<Dim>::Facet {
     double energy;              ///< J, undeformed
     Eigen::VectorXd dead_load;  ///< N, this facet's part of G0
   };
 
-  void addFacet(const LayeredBody<Dim>& body, const typename QuadraticMesh<Dim>::Facet& facet);
-  Positions positions(const Facet& facet, const Eigen::VectorXd& state) const;
   bool integrate(const Positions& x, double tension, double pressure, Order order, LocalEnergy& result) const;
   double total(const Eigen::VectorXd& state, double tension, double pressure) const;
 
   double tension_;
   double pressure_;
-  std::vector<Point> points_;  ///< of every facet
+  SurfaceIntegral<Dim> surface_;
   std::vector<Facet> facets_;
 };
 

@@ -7,7 +7,12 @@
 #include <vector>
 
 #include "base/cpu_time.h"
-#include "cell/contact/tip_contact.h"
+#include "base/errors.h"
+#include "cell/contact/pipette_mouth.h"
+#include "cell/contact/rigid_contact.h"
+#include "cell/contact/rounded_tip.h"
+#include "cell/contact/suction_load.h"
+#include "cell/mechanics/proximal_anchor.h"
 #include "cell/mechanics/surface_tension.h"
 #include "cell/mechanics/viscous_stress.h"
 
@@ -30,6 +35,12 @@ double largestModulus(const Scene& scene) {
   return result;
 }
 constexpr double kWithinCircle = 1 + 1e-9;
+
+/// Component of the path's translation that is the pressure of a held cell: a section's needle does not use it.
+constexpr int kPressure = 1;
+constexpr double kAnchor = 1e-2;  ///< stiffness of the anchor's springs, over modulus times radius
+constexpr double kOverlap =
+    5e-3;  ///< of lip and undeformed cell, over the lip's edge radius: so the lip has a stiffness
 
 SymmetricSolver::Method method(ElementKind element, int dimension) {
   if (hasContinuousPressure(element)) return SymmetricSolver::Method::kIndefinite;
@@ -97,6 +108,7 @@ CellProblem<Dim>::CellProblem(const Scene& scene, QuadraticMesh<Dim> mesh, Eleme
     terms.push_back(std::make_shared<ViscousStress<Dim>>(body_, viscoelasticity));
   }
   if (scene.needle.tip.rounded()) addContact(scene, terms);
+  if (scene.holding_pipette.mouth) addSuction(scene, terms);
   system_ = std::make_unique<EquilibriumSystem>(terms, constraints(scene), method(element, Dim));
   path_ = std::make_unique<LoadPath>(*system_, pathConfig(scene, linear));
 }
@@ -128,6 +140,10 @@ Constraints CellProblem<Dim>::constraints(const Scene& scene) const {
   for (int node = 0; Dim == 2 && node < displacedNodes(*body_); ++node) {
     if (body_->mesh().nodes[node][0] == 0) result.entries[Dim * node] = Constraints::kFixed;
   }
+  if (scene.holding_pipette.mouth) {
+    result.entries[body_->tipEntry() + kPressure] = Constraints::tip(kPressure);
+    return result;
+  }
   std::vector<char> held(body_->nodeCount(), 0);
   for (int node : nodesWithin(*body_, Eigen::Vector2d::Zero(), scene.holding_pipette.contact_radius, -1)) {
     held[node] = 1;
@@ -146,20 +162,95 @@ Constraints CellProblem<Dim>::constraints(const Scene& scene) const {
   return result;
 }
 
+/// @returns what all contacts of a scene have in common, with the penalty of a surface of this size (m)
+RigidContactConfig contactConfig(const Scene& scene, const Scene::Contact& contact, double size) {
+  RigidContactConfig config;
+  config.mode = contact.mode == "sliding" ? RigidContactConfig::Mode::kSliding : RigidContactConfig::Mode::kSticking;
+  config.friction = contact.friction;
+  config.adhesion = contact.adhesion_energy;
+  config.adhesion_range = contact.adhesion_range;
+  config.penalty = kPenalty * largestModulus(scene) / size;
+  return config;
+}
+
 template <int Dim>
 void CellProblem<Dim>::addContact(const Scene& scene, EquilibriumSystem::Terms& terms) {
   const Scene::Needle& needle = scene.needle;
   const RoundedTip tip = RoundedTip::make(needle.tip.shape, needle.tip.radius, needle.tip.edge_radius);
-  TipContactConfig config;
-  config.mode = needle.contact.mode == "sliding" ? TipContactConfig::Mode::kSliding : TipContactConfig::Mode::kSticking;
-  config.friction = needle.contact.friction;
-  config.adhesion = needle.contact.adhesion_energy;
-  config.adhesion_range = needle.contact.adhesion_range;
+  RigidContactConfig config = contactConfig(scene, needle.contact, needle.tip.radius);
   config.origin << needle.offset, tip.touchHeight(scene.radius(), needle.offset);
-  config.penalty = kPenalty * largestModulus(scene) / needle.tip.radius;
-  contact_ = std::make_shared<TipContact<Dim>>(*body_, tip, config);
+  contact_ = std::make_shared<RigidContact<Dim>>(*body_, std::make_shared<RoundedTip>(tip), config);
   deepest_ = kDeepest * needle.tip.radius;
   terms.push_back(contact_);
+}
+
+template <int Dim>
+void CellProblem<Dim>::addSuction(const Scene& scene, EquilibriumSystem::Terms& terms) {
+  if (Dim == 3) throw ConfigError("holding_pipette/mouth: a cell that suction holds is solved in its section only");
+  const Scene::Mouth& mouth = *scene.holding_pipette.mouth;
+  const auto lip = std::make_shared<PipetteMouth>(mouth.inner_radius, mouth.outer_radius, mouth.edge_radius, -1);
+  RigidContactConfig config = contactConfig(scene, mouth.contact, mouth.edge_radius);
+  config.moves = false;
+  config.origin.z() = kOverlap * mouth.edge_radius - lip->touchDistance(scene.radius());
+  lip_ = std::make_shared<RigidContact<Dim>>(*body_, lip, config);
+  const double modulus = largestModulus(scene), radius = scene.radius();
+  suction_ = std::make_shared<SuctionLoad<Dim>>(*body_, *lip, radius, config.origin.z(), lip_,
+                                                body_->tipEntry() + kPressure, modulus / radius);
+  const int nodes = displacedNodes(*body_);
+  std::vector<std::vector<int>> entries(nodes);
+  for (int node = 0; node < nodes; ++node) {
+    for (int k = 0; k < Dim; ++k) entries[node].push_back(Dim * node + k);
+  }
+  anchor_ =
+      std::make_shared<ProximalAnchor>(entries, std::vector<double>(nodes, 1.0 / nodes), kAnchor * modulus * radius);
+  terms.insert(terms.end(), {lip_, suction_, anchor_});
+  holding_pressure_ = mouth.pressure;
+  away_ = radius / 4;
+}
+
+template <int Dim>
+LoadPath::Result CellProblem<Dim>::hold(double pressure) {
+  const double length = pressure / suction_->unit();
+  LoadPath::Result result;
+  if (!touch_) {
+    result = path_->advance({0, 0, away_});
+    if (!result.converged) return result;
+  }
+  result = path_->advance({0, length, away_});
+  if (!result.converged) return result;
+  // The pole moves, and the surface about it hardly changes its shape: the needle meets the cell there.
+  const auto& nodes = body_->mesh().nodes;
+  const auto lower = [](const auto& a, const auto& b) { return a[Dim - 1] < b[Dim - 1]; };
+  const auto pole = std::max_element(nodes.begin(), nodes.begin() + displacedNodes(*body_), lower) - nodes.begin();
+  touch_ = path_->state()[Dim * pole + Dim - 1];
+  return result;
+}
+
+template <int Dim>
+HeldCell CellProblem<Dim>::held() const {
+  const Eigen::VectorXd& state = path_->state();
+  HeldCell held;
+  held.pressure = path_->translation()[kPressure] * suction_->unit();
+  held.tongue_length = suction_->apex(state);
+  held.tongue_volume = suction_->volume(state);
+  held.seal_radius = suction_->sealRadius();
+  held.clamping_force = lip_->ring(state).force;
+  held.imbalance = anchor_->residualForce(state)[Dim - 1];
+  return held;
+}
+
+template <int Dim>
+void CellProblem<Dim>::reset() {
+  path_->reset();
+  touch_.reset();
+}
+
+template <int Dim>
+Eigen::Vector3d CellProblem<Dim>::tipDisplacement() const {
+  Eigen::Vector3d translation = path_->translation();
+  if (suction_) translation[kPressure] = 0;
+  if (touch_) translation.z() -= *touch_;
+  return translation;
 }
 
 template <int Dim>
@@ -186,7 +277,13 @@ IndentationSolution CellProblem<Dim>::solve(const Eigen::Vector3d& tip_displacem
     throw std::invalid_argument("half a cell's tip must stay in the plane of symmetry, y = 0");
   }
   const double start = threadCpuTime();
-  const LoadPath::Result result = path_->advance(tip_displacement, duration);
+  Eigen::Vector3d target = tip_displacement;
+  LoadPath::Result result;
+  if (suction_ && !touch_) result = hold(holding_pressure_);
+  if (!suction_ || touch_) {
+    if (suction_) target += Eigen::Vector3d(0, holding_pressure_ / suction_->unit(), *touch_);
+    result = path_->advance(target, duration);
+  }
   IndentationSolution solution;
   solution.converged = result.converged;
   solution.reason = result.reason;
@@ -195,9 +292,14 @@ IndentationSolution CellProblem<Dim>::solve(const Eigen::Vector3d& tip_displacem
     solution.reason =
         "the tip enters the surface by more than 3 % of its radius: the contact is too soft for this cell";
   }
-  solution.tip_displacement = path_->translation();
+  solution.tip_displacement = tipDisplacement();
   solution.force = -path_->reaction();
   solution.stiffness = path_->stiffness();
+  if (suction_) {  // what belongs to the pressure is no force
+    solution.force[kPressure] = 0;
+    solution.stiffness.row(kPressure).setZero();
+    solution.stiffness.col(kPressure).setZero();
+  }
   if (symmetry_ == Symmetry::kMirror) {  // the other half
     solution.force *= 2;
     solution.stiffness *= 2;

@@ -22,7 +22,7 @@ class Indentation : public TipPath {
   /// See CellProblem.
   IndentationSolution solve(const Eigen::Vector3d& tip_displacement) { return problem_.solve(tip_displacement); }
   const Eigen::VectorXd& state() const { return problem_.state(); }
-  const Eigen::Vector3d& tipDisplacement() const { return problem_.tipDisplacement(); }
+  Eigen::Vector3d tipDisplacement() const { return problem_.tipDisplacement(); }
   void reset() { problem_.reset(); }
 
   IndentationSolution follow(const TipMotion& move) override { return solve(move.displacement); }

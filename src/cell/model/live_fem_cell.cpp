@@ -96,6 +96,7 @@ class SweptPath : public TipPath {
 LiveFemCell::LiveFemCell(const Scene& scene) : scene_(scene) {
   scene.validate();
   scene.requireContinuum("elements of the cell's inside");
+  scene.requireGlued("a live cell");
   if (scene.needle.contact.adhesion_energy > 0) {  // the extrapolation would be mistaken for adhesion
     throw ConfigError("needle/contact/adhesion: must be left out: a live cell has no adhesion (use indent)");
   }

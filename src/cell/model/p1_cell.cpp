@@ -32,6 +32,8 @@ std::vector<std::string> P1Cell::refusals(const Scene& scene) {
   constexpr char kNotLinear[] = " (not possible with linear tetrahedra)";
   std::vector<std::string> errors;
   if (scene.cell.tensegrity) errors.push_back(std::string("cell/model = tensegrity: must be continuum") + kNotLinear);
+  if (scene.holding_pipette.mouth)
+    errors.push_back(std::string("holding_pipette/mouth: must be left out") + kNotLinear);
   if (scene.needle.tip.shape != "disc") {
     errors.push_back("needle/tip/shape = " + scene.needle.tip.shape + ": must be disc" + kNotLinear);
   }

@@ -90,13 +90,22 @@ void checkCell(const Scene::Cell& cell, PlausibleCheck& check) {
   check.require(plausible::kLength, "cell/biomembrane/dimple_radius", cell.biomembrane->dimple_radius);
 }
 
+void checkHoldingPipette(const Scene::HoldingPipette& pipette, PlausibleCheck& check) {
+  if (!pipette.mouth)
+    return check.require(plausible::kLength, "holding_pipette/contact_radius", pipette.contact_radius);
+  const std::string path = "holding_pipette/mouth/";
+  check.require(plausible::kLength, path + "inner_radius", pipette.mouth->inner_radius);
+  check.require(plausible::kLength, path + "outer_radius", pipette.mouth->outer_radius);
+  check.require(plausible::kTipRadius, path + "edge_radius", pipette.mouth->edge_radius);
+  check.require(plausible::kSuction, path + "pressure", pipette.mouth->pressure);
+}
+
 }  // namespace
 
 void checkPlausible(const Scene& scene) {
   PlausibleCheck check;
   checkCell(scene.cell, check);
-  if (!scene.cell.tensegrity)
-    check.require(plausible::kLength, "holding_pipette/contact_radius", scene.holding_pipette.contact_radius);
+  if (!scene.cell.tensegrity) checkHoldingPipette(scene.holding_pipette, check);
   const Scene::Needle& needle = scene.needle;
   check.require(plausible::kTipRadius, "needle/tip/radius", needle.tip.radius);
   check.requireGiven(plausible::kTipRadius, "needle/tip/edge_radius", needle.tip.edge_radius);

@@ -114,6 +114,37 @@ void readAdhesion(ConfigReader contact, Scene::Contact& value) {
   readQuantity(adhesion, "range", value.adhesion_range, Range::positive(), "m", ConfigReader::kRequired);
 }
 
+void readContact(ConfigReader& contact, Scene::Contact& value) {
+  if (contact.has("mode")) value.mode.clear();  // empty unless it is read
+  contact.choice("mode", value.mode, {"sticking", "sliding"});
+  readQuantity(contact, "friction", value.friction, Range::nonNegative(), "");
+  if (value.mode == "sticking" && contact.has("friction")) {
+    contact.error("friction", "must be left out: it belongs to mode sliding only");
+  }
+  readAdhesion(contact, value);
+}
+
+void readMouth(ConfigReader mouth, Scene::Mouth& value) {
+  readQuantity(mouth, "inner_radius", value.inner_radius, Range::positive(), "m", ConfigReader::kRequired);
+  readQuantity(mouth, "outer_radius", value.outer_radius, Range::positive(), "m", ConfigReader::kRequired);
+  readQuantity(mouth, "edge_radius", value.edge_radius, Range::positive(), "m", ConfigReader::kRequired);
+  readQuantity(mouth, "pressure", value.pressure, Range::finite(), "Pa", ConfigReader::kRequired);
+  ConfigReader contact = mouth.section("contact");
+  readContact(contact, value.contact);
+}
+
+void readHoldingPipette(ConfigReader pipette, Scene::HoldingPipette& value, bool required) {
+  if (!pipette.has("mouth")) {
+    readQuantity(pipette, "contact_radius", value.contact_radius, Range::positive(), "m",
+                 required ? ConfigReader::kRequired : ConfigReader::kOptional);
+    return;
+  }
+  readMouth(pipette.section("mouth"), value.mouth.emplace());
+  value.contact_radius = value.mouth->inner_radius + value.mouth->edge_radius;
+  if (pipette.has("contact_radius"))
+    pipette.error("contact_radius", "must be left out: suction holds the cell at the mouth that is given");
+}
+
 void readNeedle(ConfigReader needle, Scene::Needle& value) {
   ConfigReader tip = needle.section("tip", ConfigReader::kRequired);
   value.tip.shape.clear();  // empty unless it is read
@@ -126,16 +157,10 @@ void readNeedle(ConfigReader needle, Scene::Needle& value) {
     tip.error("edge_radius", "must be left out: it belongs to shape rounded_flat only");
   }
   ConfigReader contact = needle.section("contact");
-  if (contact.has("mode")) value.contact.mode.clear();  // empty unless it is read
-  contact.choice("mode", value.contact.mode, {"sticking", "sliding"});
-  readQuantity(contact, "friction", value.contact.friction, Range::nonNegative(), "");
+  readContact(contact, value.contact);
   if (value.contact.mode == "sliding" && value.tip.shape == "disc") {
     contact.error("mode", std::string("must be ") + kDiscSticks);
   }
-  if (value.contact.mode == "sticking" && contact.has("friction")) {
-    contact.error("friction", "must be left out: it belongs to mode sliding only");
-  }
-  readAdhesion(contact, value.contact);
   Eigen::VectorXd offset = value.offset;
   needle.vector("offset", offset, Range::finite());
   value.offset = offset;
@@ -171,9 +196,8 @@ Scene readScene(const YAML::Node& node, const std::string& origin) {
   if (!continuum && reader.has("requirements")) {
     reader.error("requirements", "must be left out: a tensegrity cell has one model, whose error is not known");
   }
-  readQuantity(reader.section("holding_pipette", continuum ? ConfigReader::kRequired : ConfigReader::kOptional),
-               "contact_radius", scene.holding_pipette.contact_radius, Range::positive(), "m",
-               continuum ? ConfigReader::kRequired : ConfigReader::kOptional);
+  readHoldingPipette(reader.section("holding_pipette", continuum ? ConfigReader::kRequired : ConfigReader::kOptional),
+                     scene.holding_pipette, continuum);
   readNeedle(reader.section("needle", ConfigReader::kRequired), scene.needle);
   readMesh(reader.section("mesh"), scene.mesh);
   readRequirements(reader.section("requirements"), scene.requirements);
@@ -261,6 +285,11 @@ void Scene::validate() const { checkScene(*this); }
 
 void Scene::requireContinuum(const std::string& purpose) const {
   if (cell.tensegrity) throw ConfigError("cell/model = tensegrity: must be continuum for " + purpose);
+}
+
+void Scene::requireGlued(const std::string& purpose) const {
+  if (holding_pipette.mouth)
+    throw ConfigError("holding_pipette/mouth: must be left out for " + purpose + "; give contact_radius instead");
 }
 
 Scene parseScene(const YAML::Node& node, const std::string& origin) {

@@ -29,8 +29,8 @@ namespace microinjection {
 ///         (   (  +..)...)........ x
 ///          \   \   /   /
 ///           `.  `-'  .'
-///             |--:--|       holding pipette: its mouth sticks to a circle of `contact_radius`
-///             |  :  |
+///             |--:--|       holding pipette: its mouth sticks to a circle of `contact_radius`, or holds the cell by
+///             |  :  |       suction
 ///
 /// Every model reads this one struct, so that a converged, a live and a surrogate force of one file can be compared.
 /// The layers are spheres rather than measured outlines for two reasons: a mouse oocyte is out of round by 0.5 % in the
@@ -61,9 +61,25 @@ struct Scene {
     std::vector<double> outerRadii() const;                              ///< m, of each layer
     std::vector<std::shared_ptr<const Material>> makeMaterials() const;  ///< of each layer
   };
-  /// The surface in the mouth is fixed, as in the paper (III.B). The suction that deforms it there is not modelled.
+  struct Contact {
+    std::string mode = "sticking";  ///< sticking, or sliding for rounded tips
+    double friction = 0;            ///< Coulomb's coefficient, of sliding only, >= 0
+    double adhesion_energy = 0;     ///< J/m^2, energy of separation, for rounded tips only, >= 0
+    double adhesion_range = 0;      ///< m, gap of the largest traction, > 0 with adhesion; see RigidContact
+  };
+  /// A hollow pipette's end and the pressure in it: see PipetteMouth and SuctionLoad.
+  struct Mouth {
+    double inner_radius = 0;  ///< m, of the bore
+    double outer_radius = 0;  ///< m
+    double edge_radius = 0;   ///< m, of the rounded lip, at most half of the wall
+    double pressure = 0;      ///< Pa, gauge, in the bore; suction is below 0
+    Contact contact;          ///< of the lip with the cell
+  };
+  /// Without a mouth the surface in a circle is fixed, as in the paper (III.B). With one, suction holds the cell and
+  /// deforms it there.
   struct HoldingPipette {
-    double contact_radius = 10e-6;  ///< m, of the circle on the surface that sticks to the mouth
+    double contact_radius = 10e-6;  ///< m, of the circle on the surface that is fixed; with a mouth, that it touches
+    std::optional<Mouth> mouth;
   };
   /// A disc is the paper's nodal contact: the vertices under it stick to it. Its sharp edge folds the surface of a
   /// nonlinear cell, so a converged force ends early: 8 um deep with elements of 0.4 um at the edge, compared with 45
@@ -75,12 +91,6 @@ struct Scene {
 
     bool rounded() const { return shape != "disc"; }
     double edgeRadius() const { return shape == "hemisphere" ? radius : edge_radius; }  ///< m, of any shape; disc: 0
-  };
-  struct Contact {
-    std::string mode = "sticking";  ///< sticking, or sliding for rounded tips
-    double friction = 0;            ///< Coulomb's coefficient, of sliding only, >= 0
-    double adhesion_energy = 0;     ///< J/m^2, energy of separation, for rounded tips only, >= 0
-    double adhesion_range = 0;      ///< m, gap of the largest traction, > 0 with adhesion; see TipContact
   };
   struct Needle {
     Tip tip;
@@ -123,6 +133,8 @@ struct Scene {
   /// Throws ConfigError that names the purpose for a tensegrity cell, which has no mesh of its
   /// inside.
   void requireContinuum(const std::string& purpose) const;
+  /// Throws ConfigError that names the purpose for a cell that suction holds.
+  void requireGlued(const std::string& purpose) const;
 };
 
 /// disc (flat, with a sharp edge), hemisphere, rounded_flat.

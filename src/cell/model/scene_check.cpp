@@ -105,6 +105,26 @@ void checkBiomembrane(const Scene& scene, ConfigErrors& errors) {
                  " m", "above needle/tip/radius and at most the cell's radius, " + metres(scene.radius()));
 }
 
+void checkMouth(const Scene& scene, ConfigErrors& errors) {
+  const Scene::Mouth& mouth = *scene.holding_pipette.mouth;
+  const std::string path = "holding_pipette/mouth/";
+  const double reach = kReach * scene.radius(), wall = mouth.outer_radius - mouth.inner_radius;
+  errors.require(Range::positive(), path + "inner_radius", mouth.inner_radius, " m");
+  errors.require(wall > 0, path + "outer_radius", mouth.outer_radius, " m",
+                 "above the inner radius, " + metres(mouth.inner_radius));
+  errors.require(mouth.edge_radius > 0 && mouth.edge_radius <= (1 + kRounding) * wall / 2, path + "edge_radius",
+                 mouth.edge_radius, " m", "above 0 and at most half of the wall, " + metres(wall / 2));
+  errors.require(
+      mouth.inner_radius + mouth.edge_radius < reach, path + "inner_radius", mouth.inner_radius, " m",
+      "with edge_radius below 0.95 of the cell's radius, " + metres(reach) + ": a wider mouth swallows the cell");
+  errors.require(Range::finite(), path + "pressure", mouth.pressure, " Pa");
+  errors.require(mouth.pressure <= 0, path + "pressure", mouth.pressure, " Pa",
+                 "at most 0: pressure blows the cell off");
+  errors.require(scene.needle.tip.rounded(), "needle/tip/shape", scene.needle.tip.shape, "",
+                 "hemisphere or rounded_flat where suction holds the cell: the cell moves under the tip");
+  errors.require(Range::nonNegative(), path + "contact/friction", mouth.contact.friction);
+}
+
 void checkNeedle(const Scene::Needle& needle, double cell_radius, ConfigErrors& errors) {
   checkTip(needle.tip, cell_radius, errors);
   const std::string& mode = needle.contact.mode;
@@ -154,6 +174,7 @@ void checkScene(const Scene& scene) {
   }
   errors.require(Range::open(0, reach).contains(contact_radius), "holding_pipette/contact_radius", contact_radius, " m",
                  "above 0 and below 0.95 of the cell's radius, " + metres(reach));
+  if (scene.holding_pipette.mouth) checkMouth(scene, errors);
   checkNeedle(scene.needle, scene.radius(), errors);
   checkBiomembrane(scene, errors);
   checkMesh(scene, errors);

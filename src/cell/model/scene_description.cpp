@@ -33,6 +33,11 @@ std::string describeCellAndTip(const Scene& scene) {
   const Scene::Tip& tip = scene.needle.tip;
   out << "held " << scene.holding_pipette.contact_radius << " tip " << tip.shape << ' ' << tip.radius << ' '
       << tip.edgeRadius() << ' ' << scene.needle.contact.mode << ' ' << scene.needle.contact.friction;
+  if (const std::optional<Scene::Mouth>& mouth = scene.holding_pipette.mouth) {
+    out << " mouth " << mouth->inner_radius << ' ' << mouth->outer_radius << ' ' << mouth->edge_radius << ' '
+        << mouth->pressure << ' ' << mouth->contact.mode << ' ' << mouth->contact.friction << ' '
+        << mouth->contact.adhesion_energy << ' ' << mouth->contact.adhesion_range;
+  }
   return out.str();
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cell/contact/pipette_mouth.h"
 #include "cell/contact/rounded_tip.h"
 #include "cell/mesh/section_mesher.h"
 #include "cell/mesh/swept_mesh.h"
@@ -13,6 +14,7 @@ namespace {
 constexpr double kGrowth = 0.25;  ///< of the elements' size per distance from the needle's edge
 constexpr int kSegments = 8;      ///< around the needle, level 0
 constexpr int kFewestSegments = 6;
+constexpr double kLipReach = 2;  ///< of the finest elements about the lip, over its edge radius
 
 /// Size of the elements far from the needle, m. They matter less and are refined more slowly.
 double farSize(const Scene& scene, double level) { return scene.radius() / 6 * std::pow(2, -0.5 * level); }
@@ -31,8 +33,15 @@ SectionMeshConfig sectionConfig(const Scene& scene, double level) {
   config.radii = scene.cell.outerRadii();
   config.size = farSize(scene, level);
   config.growth = kGrowth;
-  config.vertices = {{scene.holding_pipette.contact_radius, -1}};
-  config.refinements = {{scene.holding_pipette.contact_radius, -1, 0, holdingSize(scene, level)}};
+  if (const std::optional<Scene::Mouth>& mouth = scene.holding_pipette.mouth) {
+    // The surface bends about the lip, slides over it, and comes to lie against the bore as the tongue grows.
+    const PipetteMouth lip(mouth->inner_radius, mouth->outer_radius, mouth->edge_radius, -1);
+    config.refinements = {{lip.touchRadius(scene.radius()), -1, kLipReach * mouth->edge_radius,
+                           mouth->edge_radius / 4 * std::pow(2, -level)}};
+  } else {
+    config.vertices = {{scene.holding_pipette.contact_radius, -1}};
+    config.refinements = {{scene.holding_pipette.contact_radius, -1, 0, holdingSize(scene, level)}};
+  }
   const double edge = edgeSize(scene, level), radius = scene.needle.tip.radius;
   if (scene.needle.tip.rounded()) {
     config.refinements.push_back({0, +1, contactReach(scene), edge});

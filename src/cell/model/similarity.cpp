@@ -27,6 +27,13 @@ Scene withoutDimension(const Scene& scene) {
     divide(layer.surface_tension, units.modulus * units.length);
   }
   divide(result.holding_pipette.contact_radius, units.length);
+  if (std::optional<Scene::Mouth>& mouth = result.holding_pipette.mouth) {
+    for (double* length : {&mouth->inner_radius, &mouth->outer_radius, &mouth->edge_radius})
+      divide(*length, units.length);
+    divide(mouth->pressure, units.modulus);
+    divide(mouth->contact.adhesion_energy, units.modulus * units.length);
+    divide(mouth->contact.adhesion_range, units.length);
+  }
   Scene::Needle& needle = result.needle;
   divide(needle.tip.radius, units.length);
   divide(needle.tip.edge_radius, units.length);

@@ -101,6 +101,7 @@ void SurrogatePlan::check(const Scene& scene) {
         "cell/model = tensegrity: must be continuum: a surrogate cell is one of revolution about the holding "
         "pipette's axis, and a tensegrity cell is not; it is solved live");
   }
+  scene.requireGlued("a surrogate cell");
   if (!scene.needle.tip.rounded() && !isLinear(scene.cell)) {
     throw ConfigError(
         "needle/tip/shape = disc: must be hemisphere or rounded_flat, or the cell's material linear and without "

@@ -251,5 +251,32 @@ TEST(SceneCheck, ValidateGuardsScenesMadeInCode) {
   expectIn(errors(), {"cell/layers: must have at least one layer"});
 }
 
+TEST(SceneCheck, AMouthIsATubeThatTheCellCloses) {
+  const auto with = [](const std::string& mouth, const char* needle = "{tip: {shape: hemisphere, radius: 3e-6}}") {
+    YAML::Node node = YAML::Load(kGood);
+    node["holding_pipette"] = YAML::Load("{mouth: " + mouth + "}");
+    node["needle"] = YAML::Load(needle);
+    return errorsOf(node);
+  };
+  const std::string good = "{inner_radius: 8e-6, outer_radius: 20e-6, edge_radius: 2e-6, pressure: -800}";
+  EXPECT_EQ(with(good), "");
+  expectIn(with(good, "{tip: {shape: disc, radius: 3e-6}}"),
+           {"needle/tip/shape = disc: must be hemisphere or rounded_flat where suction holds the cell"});
+  expectIn(with("{inner_radius: 8e-6, outer_radius: 8e-6, edge_radius: 2e-6, pressure: -800}"),
+           {"holding_pipette/mouth/outer_radius = 8e-06 m: must be above the inner radius, 8e-06 m"});
+  expectIn(with("{inner_radius: 8e-6, outer_radius: 20e-6, edge_radius: 7e-6, pressure: 20}"),
+           {"mouth/pressure = 20 Pa: must be"});
+  expectIn(with("{inner_radius: 8e-6, outer_radius: 20e-6, edge_radius: 7e-6, pressure: -800}"),
+           {"mouth/edge_radius = 7e-06 m: must be above 0 and at most half of the wall, 6e-06 m"});
+  expectIn(with("{inner_radius: 27e-6, outer_radius: 40e-6, edge_radius: 2e-6, pressure: -800}"),
+           {"mouth/inner_radius = 2.7e-05 m: must be with edge_radius below 0.95 of the cell's radius", "swallows"});
+  expectIn(with("{inner_radius: 8e-6, outer_radius: 20e-6, pressure: -800, suction: 3}"),
+           {"mouth/edge_radius", "is missing", "suction"});
+  YAML::Node both = YAML::Load(kGood);
+  both["needle"] = YAML::Load("{tip: {shape: hemisphere, radius: 3e-6}}");
+  both["holding_pipette"]["mouth"] = YAML::Load(good);
+  expectIn(errorsOf(both), {"holding_pipette/contact_radius", "must be left out: suction holds the cell"});
+}
+
 }  // namespace
 }  // namespace microinjection

@@ -41,6 +41,22 @@ TEST(Scene, EverySceneThatComesAlongIsValid) {
   EXPECT_GE(scenes, 8);
 }
 
+TEST(Scene, ReadsAMouth) {
+  YAML::Node node = YAML::Load(kLayered);
+  node["holding_pipette"] = YAML::Load(
+      "{mouth: {inner_radius: 8e-6, outer_radius: 20e-6, edge_radius: 2e-6, pressure: -800, contact: {mode: sliding, "
+      "friction: 0.1}}}");
+  const Scene scene = parseScene(node, "scene.yaml");
+  ASSERT_TRUE(scene.holding_pipette.mouth);
+  EXPECT_EQ(scene.holding_pipette.mouth->inner_radius, 8e-6);
+  EXPECT_EQ(scene.holding_pipette.mouth->outer_radius, 20e-6);
+  EXPECT_EQ(scene.holding_pipette.mouth->edge_radius, 2e-6);
+  EXPECT_EQ(scene.holding_pipette.mouth->pressure, -800);
+  EXPECT_EQ(scene.holding_pipette.mouth->contact.mode, "sliding");
+  EXPECT_EQ(scene.holding_pipette.mouth->contact.friction, 0.1);
+  EXPECT_FALSE(parseScene(YAML::Load(kLayered), "scene.yaml").holding_pipette.mouth);
+}
+
 /// What test/reference/layered.csv and hemisphere.csv are about.
 TEST(Scene, TheScenesOfTheReferencesAreThose) {
   const Scene layered = loadScene(kCells + "mouse_oocyte_layered.yaml");

@@ -1,4 +1,4 @@
-#include "cell/contact/tip_contact.h"
+#include "cell/contact/rigid_contact.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -46,8 +46,9 @@ double areaDensity(const Eigen::Matrix<double, 3, 2>& tangents, const Eigen::Vec
 }  // namespace
 
 template <int Dim>
-TipContact<Dim>::TipContact(const LayeredBody<Dim>& body, const RoundedTip& tip, const TipContactConfig& config)
-    : tip_(tip), config_(config) {
+RigidContact<Dim>::RigidContact(const LayeredBody<Dim>& body, std::shared_ptr<const RigidSurface> surface,
+                                const RigidContactConfig& config)
+    : surface_(std::move(surface)), config_(config) {
   for (const auto& facet : body.mesh().facets) {
     if (facet.layer == 0) addFacet(body, facet);
   }
@@ -55,14 +56,14 @@ TipContact<Dim>::TipContact(const LayeredBody<Dim>& body, const RoundedTip& tip,
 }
 
 template <int Dim>
-void TipContact<Dim>::addFacet(const LayeredBody<Dim>& body, const typename QuadraticMesh<Dim>::Facet& facet) {
+void RigidContact<Dim>::addFacet(const LayeredBody<Dim>& body, const typename QuadraticMesh<Dim>::Facet& facet) {
   const bool quadratic = isQuadratic(body.kind());
   Facet result;
   result.nodes = quadratic ? QuadraticMesh<Dim>::kFacetNodes : Dim;
   for (int a = 0; a < result.nodes; ++a) {
     for (int k = 0; k < Dim; ++k) result.entries.push_back(Dim * facet.nodes[a] + k);
   }
-  for (int k = 0; k < Dim; ++k) result.entries.push_back(body.tipEntry() + (Dim == 2 ? 2 * k : k));
+  for (int k = 0; config_.moves && k < Dim; ++k) result.entries.push_back(body.tipEntry() + (Dim == 2 ? 2 * k : k));
   for (const ReferenceElement::Point& at : referenceFacet<Dim>().points) {
     Vector x = Vector::Zero();
     Eigen::Matrix<double, Dim, Dim - 1> tangents = Eigen::Matrix<double, Dim, Dim - 1>::Zero();
@@ -79,14 +80,14 @@ void TipContact<Dim>::addFacet(const LayeredBody<Dim>& body, const typename Quad
     point.weight = at.weight * areaDensity(tangents, x);
     point.shape = quadratic ? at.shape : at.barycentric;
     result.points.push_back(point);
-    result.near = result.near || tip_.distance(inSpace(point.undeformed)) < kNear * tip_.radius();
+    result.near = result.near || surface_->distance(inSpace(point.undeformed)) < kNear * surface_->size();
   }
   facets_.push_back(std::move(result));
 }
 
 template <int Dim>
-double TipContact<Dim>::gap(const Vector& at, Vector& normal, Matrix& curvature) const {
-  const Gap gap = tip_.gap(inSpace(at));
+double RigidContact<Dim>::gap(const Vector& at, Vector& normal, Matrix& curvature) const {
+  const Gap gap = surface_->gap(inSpace(at));
   normal = fromSpace<Dim>(gap.normal);
   for (int k = 0; k < Dim; ++k) {
     for (int l = 0; l < Dim; ++l) curvature(k, l) = gap.curvature(Dim == 2 ? 2 * k : k, Dim == 2 ? 2 * l : l);
@@ -95,19 +96,19 @@ double TipContact<Dim>::gap(const Vector& at, Vector& normal, Matrix& curvature)
 }
 
 template <int Dim>
-typename TipContact<Dim>::Vector TipContact<Dim>::relative(const Facet& facet, const Point& point,
-                                                           const Eigen::VectorXd& state) const {
+typename RigidContact<Dim>::Vector RigidContact<Dim>::relative(const Facet& facet, const Point& point,
+                                                               const Eigen::VectorXd& state) const {
   Vector at = point.undeformed;
   for (int a = 0; a < facet.nodes; ++a) {
     for (int k = 0; k < Dim; ++k) at[k] += point.shape[a] * state[facet.entries[Dim * a + k]];
   }
-  for (int k = 0; k < Dim; ++k) at[k] -= state[facet.entries[Dim * facet.nodes + k]];
+  for (int k = 0; config_.moves && k < Dim; ++k) at[k] -= state[facet.entries[Dim * facet.nodes + k]];
   return at;
 }
 
 template <int Dim>
-bool TipContact<Dim>::contribution(const Point& point, const Vector& at, Local& local) const {
-  const bool stuck = config_.mode == TipContactConfig::Mode::kSticking && point.memory.touching;
+bool RigidContact<Dim>::contribution(const Point& point, const Vector& at, Local& local) const {
+  const bool stuck = config_.mode == RigidContactConfig::Mode::kSticking && point.memory.touching;
   const double stiffness = config_.penalty * point.weight;
   if (stuck) {
     const Vector stretch = at - point.memory.anchor;
@@ -116,7 +117,7 @@ bool TipContact<Dim>::contribution(const Point& point, const Vector& at, Local& 
     local.hessian = stiffness * Matrix::Identity();
     return true;
   }
-  const double distance = tip_.distance(inSpace(at));
+  const double distance = surface_->distance(inSpace(at));
   const bool with_friction = config_.friction > 0 && point.memory.touching;
   const bool adhering = distance > 0 && point.memory.bonded;
   if (distance >= 0 && !with_friction && !adhering) return false;
@@ -130,7 +131,7 @@ bool TipContact<Dim>::contribution(const Point& point, const Vector& at, Local& 
     local.gradient = stiffness * distance * normal;
     // During the iterations a point may be so far inside that the true second derivative is
     // negative.
-    const double bending = std::max(distance, -kDeeper * deepest_ - kDeepestFirst * tip_.radius());
+    const double bending = std::max(distance, -kDeeper * deepest_ - kDeepestFirst * surface_->size());
     local.hessian = stiffness * (normal * normal.transpose() + bending * curvature);
   }
   if (with_friction) addFriction(point, at, local);
@@ -139,7 +140,7 @@ bool TipContact<Dim>::contribution(const Point& point, const Vector& at, Local& 
 
 /// Elastic up to the bound of Coulomb's law, then of constant force: Huber's function of the slip.
 template <int Dim>
-void TipContact<Dim>::addFriction(const Point& point, const Vector& at, Local& local) const {
+void RigidContact<Dim>::addFriction(const Point& point, const Vector& at, Local& local) const {
   const Matrix tangential = Matrix::Identity() - point.memory.normal * point.memory.normal.transpose();
   const Vector slip = tangential * (at - point.memory.anchor);
   const double stiffness = config_.penalty * point.weight,
@@ -158,7 +159,7 @@ void TipContact<Dim>::addFriction(const Point& point, const Vector& at, Local& l
 }
 
 template <int Dim>
-void TipContact<Dim>::addAdhesion(const Point& point, const Vector& at, Local& local) const {
+void RigidContact<Dim>::addAdhesion(const Point& point, const Vector& at, Local& local) const {
   Vector normal;
   Matrix curvature;
   const double range = config_.adhesion_range, open = gap(at, normal, curvature) / range;
@@ -170,9 +171,9 @@ void TipContact<Dim>::addAdhesion(const Point& point, const Vector& at, Local& l
 }
 
 template <int Dim>
-bool TipContact<Dim>::evaluate(int index, const Eigen::VectorXd& state, Order order, LocalEnergy& result) const {
+bool RigidContact<Dim>::evaluate(int index, const Eigen::VectorXd& state, Order order, LocalEnergy& result) const {
   const Facet& facet = facets_[index];
-  const int nodes = facet.nodes, size = Dim * (nodes + 1);
+  const int nodes = facet.nodes, blocks = nodes + (config_.moves ? 1 : 0), size = Dim * blocks;
   result.zero = true;
   for (const Point& point : facet.points) {
     Local local;
@@ -187,9 +188,9 @@ bool TipContact<Dim>::evaluate(int index, const Eigen::VectorXd& state, Order or
     if (order == Order::kEnergy) continue;
     // The relative position moves with the nodes' shape functions, and opposite to the tip.
     const auto share = [&](int a) { return a < nodes ? point.shape[a] : -1.0; };
-    for (int a = 0; a <= nodes; ++a) {
+    for (int a = 0; a < blocks; ++a) {
       result.gradient.template segment<Dim>(Dim * a) += share(a) * local.gradient;
-      for (int b = 0; order == Order::kHessian && b <= nodes; ++b) {
+      for (int b = 0; order == Order::kHessian && b < blocks; ++b) {
         result.hessian.template block<Dim, Dim>(Dim * a, Dim * b) += share(a) * share(b) * local.hessian;
       }
     }
@@ -198,16 +199,16 @@ bool TipContact<Dim>::evaluate(int index, const Eigen::VectorXd& state, Order or
 }
 
 template <int Dim>
-bool TipContact<Dim>::settle(Memory& memory, const Vector& at) const {
+bool RigidContact<Dim>::settle(Memory& memory, const Vector& at) const {
   Vector normal;
   Matrix curvature;
   const double distance = gap(at, normal, curvature);
   const bool was_touching = memory.touching;
-  if (config_.mode == TipContactConfig::Mode::kSticking) {
+  if (config_.mode == RigidContactConfig::Mode::kSticking) {
     if (was_touching && (at - memory.anchor).dot(normal) > 0) {  // the traction would be tensile
       memory.touching = false;
     } else if (!was_touching && distance < 0) {
-      const double before = tip_.distance(inSpace(memory.last));
+      const double before = surface_->distance(inSpace(memory.last));
       const double share = before > 0 ? before / (before - distance) : 0;
       const Vector met = memory.last + share * (at - memory.last);
       const double off = gap(met, normal, curvature);
@@ -232,7 +233,7 @@ bool TipContact<Dim>::settle(Memory& memory, const Vector& at) const {
 }
 
 template <int Dim>
-bool TipContact<Dim>::beginStep(double /*duration*/) {
+bool RigidContact<Dim>::beginStep(double /*duration*/) {
   for (Facet& facet : facets_) {
     for (Point& point : facet.points) point.memory = point.accepted;
   }
@@ -240,13 +241,13 @@ bool TipContact<Dim>::beginStep(double /*duration*/) {
 }
 
 template <int Dim>
-bool TipContact<Dim>::settle(const Eigen::VectorXd& state) {
+bool RigidContact<Dim>::settle(const Eigen::VectorXd& state) {
   bool changed = false;
   deepest_ = 0;
   for (Facet& facet : facets_) {
     for (Point& point : facet.points) {
       const Vector at = relative(facet, point, state);
-      deepest_ = std::max(deepest_, -tip_.distance(inSpace(at)));
+      deepest_ = std::max(deepest_, -surface_->distance(inSpace(at)));
       changed = settle(point.memory, at) || changed;
     }
   }
@@ -254,13 +255,13 @@ bool TipContact<Dim>::settle(const Eigen::VectorXd& state) {
 }
 
 template <int Dim>
-void TipContact<Dim>::accept(const Eigen::VectorXd& state) {
+void RigidContact<Dim>::accept(const Eigen::VectorXd& state) {
   for (Facet& facet : facets_) {
     for (Point& point : facet.points) {
       Memory& memory = point.memory;
       memory.last = relative(facet, point, state);
       if (config_.adhesion > 0) {
-        const double distance = tip_.distance(inSpace(memory.last));
+        const double distance = surface_->distance(inSpace(memory.last));
         memory.bonded = memory.touching || distance < 0 || (memory.bonded && distance < kFree * config_.adhesion_range);
       }
       point.accepted = memory;
@@ -269,7 +270,7 @@ void TipContact<Dim>::accept(const Eigen::VectorXd& state) {
 }
 
 template <int Dim>
-void TipContact<Dim>::reset() {
+void RigidContact<Dim>::reset() {
   deepest_ = 0;
   for (Facet& facet : facets_) {
     for (Point& point : facet.points) {
@@ -281,16 +282,38 @@ void TipContact<Dim>::reset() {
 }
 
 template <int Dim>
-int TipContact<Dim>::touchingPoints() const {
+typename RigidContact<Dim>::Ring RigidContact<Dim>::ring(const Eigen::VectorXd& state) const {
+  Ring ring;
+  double weight = 0, square = 0;
+  Local local;
+  for (const Facet& facet : facets_) {
+    for (const Point& point : facet.points) {
+      const Vector at = relative(facet, point, state);
+      if (!contribution(point, at, local)) continue;
+      const double pressed = local.gradient.norm(), r = inSpace(at).template head<2>().norm();
+      ring.force -= local.gradient[Dim - 1];
+      weight += pressed;
+      ring.radius += pressed * r;
+      square += pressed * r * r;
+    }
+  }
+  if (!(weight > 0)) return Ring();
+  ring.radius /= weight;
+  ring.spread = std::sqrt(std::max(square / weight - ring.radius * ring.radius, 0.0));
+  return ring;
+}
+
+template <int Dim>
+int RigidContact<Dim>::touchingPoints() const {
   int count = 0;
   for (const Facet& facet : facets_) {
     for (const Point& point : facet.points)
-      count += tip_.distance(inSpace(point.memory.last)) < 0 || point.memory.touching;
+      count += surface_->distance(inSpace(point.memory.last)) < 0 || point.memory.touching;
   }
   return count;
 }
 
-template class TipContact<2>;
-template class TipContact<3>;
+template class RigidContact<2>;
+template class RigidContact<3>;
 
 }  // namespace microinjection

@@ -1,4 +1,4 @@
-#include "cell/contact/tip_contact.h"
+#include "cell/contact/rigid_contact.h"
 
 #include <gtest/gtest.h>
 
@@ -7,6 +7,7 @@
 #include <random>
 
 #include "base/finite_difference.h"
+#include "cell/contact/rounded_tip.h"
 #include "cell/mesh/section_mesher.h"
 #include "cell/mesh/swept_mesh.h"
 
@@ -25,11 +26,11 @@ QuadraticMesh<2> section() {
 
 template <int Dim>
 struct Fixture {
-  explicit Fixture(const TipContactConfig& wanted) : body(mesh(), ElementKind::kP2, {makeMaterial({})}) {
-    TipContactConfig config = wanted;
+  explicit Fixture(const RigidContactConfig& wanted) : body(mesh(), ElementKind::kP2, {makeMaterial({})}) {
+    RigidContactConfig config = wanted;
     config.origin = {0, 0, kRadius};
     config.penalty = 1e12;
-    contact = std::make_unique<TipContact<Dim>>(body, RoundedTip(kTip, kTip), config);
+    contact = std::make_unique<RigidContact<Dim>>(body, std::make_shared<RoundedTip>(kTip, kTip), config);
   }
 
   static QuadraticMesh<Dim> mesh() {
@@ -86,33 +87,33 @@ struct Fixture {
   }
 
   LayeredBody<Dim> body;
-  std::unique_ptr<TipContact<Dim>> contact;
+  std::unique_ptr<RigidContact<Dim>> contact;
 };
 
 template <int Dim>
-void expectDerivativesOf(const TipContactConfig& config) {
+void expectDerivativesOf(const RigidContactConfig& config) {
   Fixture<Dim> fixture(config);
   EXPECT_EQ(fixture.expectDerivatives(fixture.pushed(-1e-6, 1)), 0);  // away from the cell
   const Eigen::VectorXd touching = fixture.pushed(0.02e-6, 2);
   EXPECT_GT(fixture.expectDerivatives(touching, false), 0);
-  EXPECT_TRUE(fixture.endStep(touching) || config.mode == TipContactConfig::Mode::kSliding);
+  EXPECT_TRUE(fixture.endStep(touching) || config.mode == RigidContactConfig::Mode::kSliding);
   fixture.endStep(touching);
   EXPECT_GT(fixture.expectDerivatives(fixture.pushed(0.022e-6, 3)), 0);  // with a memory
 }
 
-TEST(TipContact, DerivativesInTheSection) {
+TEST(RigidContact, DerivativesInTheSection) {
   expectDerivativesOf<2>({});
-  TipContactConfig sliding;
-  sliding.mode = TipContactConfig::Mode::kSliding;
+  RigidContactConfig sliding;
+  sliding.mode = RigidContactConfig::Mode::kSliding;
   expectDerivativesOf<2>(sliding);
   sliding.friction = 0.3;
   expectDerivativesOf<2>(sliding);
 }
 
-TEST(TipContact, DerivativesInSpace) { expectDerivativesOf<3>({}); }
+TEST(RigidContact, DerivativesInSpace) { expectDerivativesOf<3>({}); }
 
-TipContactConfig adhesive(TipContactConfig::Mode mode) {
-  TipContactConfig config;
+RigidContactConfig adhesive(RigidContactConfig::Mode mode) {
+  RigidContactConfig config;
   config.mode = mode;
   config.adhesion = 2e-3;
   config.adhesion_range = 0.5e-6;
@@ -120,7 +121,7 @@ TipContactConfig adhesive(TipContactConfig::Mode mode) {
 }
 
 template <int Dim>
-void expectAdhesion(TipContactConfig::Mode mode) {
+void expectAdhesion(RigidContactConfig::Mode mode) {
   Fixture<Dim> fixture(adhesive(mode));
   const Eigen::VectorXd above = fixture.pushed(-0.3e-6, 6);
   EXPECT_EQ(fixture.expectDerivatives(above), 0);  // not before it has touched
@@ -132,15 +133,15 @@ void expectAdhesion(TipContactConfig::Mode mode) {
   EXPECT_EQ(fixture.expectDerivatives(above), 0);  // it was torn off
 }
 
-TEST(TipContact, DerivativesOfAdhesion) {
-  expectAdhesion<2>(TipContactConfig::Mode::kSliding);
-  expectAdhesion<2>(TipContactConfig::Mode::kSticking);
-  expectAdhesion<3>(TipContactConfig::Mode::kSliding);
+TEST(RigidContact, DerivativesOfAdhesion) {
+  expectAdhesion<2>(RigidContactConfig::Mode::kSliding);
+  expectAdhesion<2>(RigidContactConfig::Mode::kSticking);
+  expectAdhesion<3>(RigidContactConfig::Mode::kSliding);
 }
 
 /// Of a tip that is drawn off a rigid surface: energy of parting times the area that has touched, and its most.
-TEST(TipContact, AdhesionDoesTheWorkThatItIsGiven) {
-  Fixture<2> fixture(adhesive(TipContactConfig::Mode::kSliding));
+TEST(RigidContact, AdhesionDoesTheWorkThatItIsGiven) {
+  Fixture<2> fixture(adhesive(RigidContactConfig::Mode::kSliding));
   const auto rigid = [&](double depth) {
     Eigen::VectorXd state = Eigen::VectorXd::Zero(fixture.body.stateSize());
     state[state.size() - 1] = -depth;
@@ -174,7 +175,7 @@ TEST(TipContact, AdhesionDoesTheWorkThatItIsGiven) {
   EXPECT_NEAR(pull(-0.5e-6), most, 0.07 * most);
 }
 
-TEST(TipContact, TheNeedleCanLoseIt) {
+TEST(RigidContact, TheNeedleCanLoseIt) {
   Fixture<2> fixture({});
   fixture.endStep(fixture.pushed(0.3e-6, 4));
   EXPECT_GT(fixture.contact->touchingPoints(), 0);

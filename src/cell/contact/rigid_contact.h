@@ -1,26 +1,27 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
+#include <memory>
 #include <vector>
 
-#include "cell/contact/rounded_tip.h"
+#include "cell/contact/rigid_surface.h"
 #include "cell/mechanics/energy_term.h"
 #include "cell/mechanics/layered_body.h"
 
 namespace microinjection {
 
-struct TipContactConfig {
+struct RigidContactConfig {
   enum class Mode { kSticking, kSliding };
   Mode mode = Mode::kSticking;
   double friction = 0;                               ///< Coulomb's coefficient, >= 0, of kSliding
   double adhesion = 0;                               ///< J/m^2, >= 0, energy of separation per area
   double adhesion_range = 0;                         ///< m, > 0 with adhesion: gap of the largest traction
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< m, lowest point of the tip's axis at first contact
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< m, of the surface's frame at first contact
   double penalty = 0;                                ///< Pa/m, traction per penetration, > 0
+  bool moves = true;                                 ///< with the tip's translation; false: it stays at the origin
 };
 
-/// Unilateral contact of a body's outer surface with a rounded tip and its shaft, by penalty at the
+/// Unilateral contact of a body's outer surface with a rigid pipette, a needle's end or a mouth, by penalty at the
 /// surface's quadrature points (Wriggers, "Computational contact mechanics", ch. 6); tractions are
 /// per undeformed area.
 ///
@@ -35,9 +36,10 @@ struct TipContactConfig {
 /// solids", 1994, normal part); at most G/(e d). With sticking, it begins when a point is released.
 /// It ends at a large gap, where its traction is negligible.
 template <int Dim>
-class TipContact : public EnergyTerm {
+class RigidContact : public EnergyTerm {
  public:
-  TipContact(const LayeredBody<Dim>& body, const RoundedTip& tip, const TipContactConfig& config);
+  RigidContact(const LayeredBody<Dim>& body, std::shared_ptr<const RigidSurface> surface,
+               const RigidContactConfig& config);
 
   int elementCount() const override { return static_cast<int>(facets_.size()); }
   const std::vector<int>& entries(int facet) const override { return facets_[facet].entries; }
@@ -49,6 +51,14 @@ class TipContact : public EnergyTerm {
   void reset() override;
 
   int touchingPoints() const;  ///< quadrature points in contact at the last accepted state
+
+  /// Where the surface is pressed against the pipette at a state: the circle's radius (m), a mean with the normal
+  /// traction as weight, its spread (m, standard deviation), and the force along z that the contact exerts on the body
+  /// (N, of the whole body). Nothing touches: all zero.
+  struct Ring {
+    double radius = 0, spread = 0, force = 0;
+  };
+  Ring ring(const Eigen::VectorXd& state) const;
 
   /// Largest penetration of the tip into the surface at the last equilibrium, m. It should be small
   /// against the tip's radius.
@@ -73,7 +83,7 @@ class TipContact : public EnergyTerm {
     Memory memory, accepted;             ///< of this step, and of the last accepted one
   };
   struct Facet {
-    std::vector<int> entries;  ///< node by node, then the tip's
+    std::vector<int> entries;  ///< node by node, then the tip's if it moves
     int nodes;
     std::vector<Point> points;
     bool near = false;  ///< to the tip, undeformed: its points may come into contact
@@ -92,8 +102,8 @@ class TipContact : public EnergyTerm {
   bool settle(Memory& memory, const Vector& at) const;
   double gap(const Vector& at, Vector& normal, Matrix& curvature) const;
 
-  RoundedTip tip_;
-  TipContactConfig config_;
+  std::shared_ptr<const RigidSurface> surface_;
+  RigidContactConfig config_;
   std::vector<Facet> facets_;
   double deepest_ = 0;  ///< m, penetration at the last equilibrium
 };
