@@ -33,6 +33,26 @@ def check_parameters(project, text):
     return problems
 
 
+def fitted_keys(code):
+    """{(node, key)} of the maps in session_fit.cpp by which parameters follow the cell."""
+    names = dict(re.findall(r'(\bk\w+)\[\] = "(\w+)"', code))
+    found = set()
+    for keys in re.findall(r'const Keys k\w+ = (\{.*?\});', code, re.DOTALL):
+        for node, listed in re.findall(r'\{("\w+"|k\w+),\s*\{([^}]*)\}\}', keys):
+            found |= {(names.get(node, node.strip('"')), key) for key in re.findall(r'"([^"]+)"', listed)}
+    return found
+
+
+def check_fitted(project, text):
+    """parameters.md says of each key that a session fits to its cell that it is fitted."""
+    problems = []
+    for node, key in sorted(fitted_keys(project.text('src/session/session_fit.cpp'))):
+        row = table_rows(text, f'config/{node}.yaml').get(key)
+        if row and 'fitted' not in row[-1]:
+            problems.append(f'config/{node}.yaml: {key} is fitted to the cell, and the table does not say so')
+    return problems
+
+
 def check_topics(project, text):
     """Each topic that a node publishes or hears below a name of ours, and each service, is in topics_and_frames.md."""
     calls = {'/' + topic.lstrip('/') for topic in TOPIC_CALL.findall(project.sources(*NODE_FILES))}

@@ -11,8 +11,8 @@ from pathlib import Path
 
 from documents_checker import Checker
 from documents_project import Project
-from documents_tables import (check_arguments, check_commands, check_defaults, check_nodes, check_parameters, check_scene_keys, check_topics,
-                              reachable)
+from documents_tables import (check_arguments, check_commands, check_defaults, check_fitted, check_nodes, check_parameters,
+                              check_scene_keys, check_topics, fitted_keys, reachable)
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -46,6 +46,10 @@ class TheDocuments(unittest.TestCase):
 
     def test_have_every_parameter_and_its_default(self):
         self.assert_table(check_parameters, 'doc/reference/parameters.md')
+
+    def test_mark_what_a_session_fits_to_its_cell(self):
+        self.assertGreater(len(fitted_keys(self.project.text('src/session/session_fit.cpp'))), 30)
+        self.assert_table(check_fitted, 'doc/reference/parameters.md')
 
     def test_state_the_defaults_of_a_session(self):
         self.assert_none(check_defaults(self.project))
@@ -189,6 +193,12 @@ See [other](doc/guide/other.md#how-its-rate-is-mostly), `config/bridge.yaml`, `s
         self.assertEqual(check_arguments(project, '## session.launch\n| `rig` | `rig.name` | |\n'), [])
         self.assertIn('rig = rig.name', check_arguments(project, '## session.launch\n| `rig` | `rig` | |\n')[0])
         self.assertIn('the key stretch', check_scene_keys(project, '`mesh/size`')[0])
+
+    def test_reports_a_fitted_key_that_is_not_marked(self):
+        self.write('src/session/session_fit.cpp', 'constexpr char kNode[] = "bridge";\nconst Keys kForces = {{kNode, {"limits/force"}}};\n')
+        table = '## config/bridge.yaml\n\n| `limits/force` | 3.0 | N | largest; fitted |\n'
+        self.assertEqual(check_fitted(Project(self.root), table), [])
+        self.assertIn('limits/force is fitted', check_fitted(Project(self.root), table.replace('; fitted', ''))[0])
 
     def test_reports_a_default_that_is_another(self):
         self.write('README.md', 'The default rig, `sim`, or the default\nrig is `sim`.\n')

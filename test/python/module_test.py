@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy
 
 import cell_microinjection as cm
-from cell_microinjection import gym
+from cell_microinjection import _core, gym
 
 CELLS = Path(__file__).resolve().parents[2] / 'config/cells'
 SCENE = cm.Scene.load(CELLS / 'mouse_oocyte_injection.yaml')
@@ -280,6 +280,17 @@ class ATaskTest(unittest.TestCase):
         self.assertEqual(set(info['measures']), {'peak_force_N', 'deformation_m', 'lateral_error_m', 'time_s', 'punctures', 'volume_m3'})
         with self.assertRaisesRegex(cm.ConfigError, 'is over'):
             env.step([0, 0, 0, 0])
+
+    def test_names_the_state_as_the_controller_does(self):
+        trial, seen = _core.Trial(5), set()
+        observation = trial.observation
+        while not trial.over:
+            number = observation[gym.OBSERVATION.index('state')]
+            self.assertEqual(gym.STATES[int(number)], trial.state)
+            seen.add(trial.state)
+            vx, vy, vz, inject = self.straight(observation)
+            observation = trial.step(vx, vy, vz, inject > 0.5, 5)
+        self.assertLessEqual({'approach', 'contact', 'indent', 'punctured', 'inject', 'withdraw'}, seen)
 
     def test_has_the_same_bits_for_the_same_seed(self):
         first, again, other = (self.run_through(gym.Inject(steps=5), seed) for seed in (5, 5, 6))

@@ -7,6 +7,7 @@
 
 #include "base/errors.h"
 #include "cell/family/family_cell.h"
+#include "operation/control/injection_state.h"
 #include "python/bindings/arrays.h"
 #include "python/bindings/module.h"
 #include "session/package_folder.h"
@@ -76,6 +77,9 @@ void bindTrial(py::module_& module) {
   py::list names;
   for (const char* name : HandTrial::kObservation) names.append(name);
   module.attr("trial_observation") = py::tuple(names);
+  py::list states;  // an observation has the number of its state
+  for (std::size_t i = 0; i < kInjectionStates.size(); ++i) states.append(toText(static_cast<InjectionState>(i)));
+  module.attr("trial_states") = py::tuple(states);
 }
 
 }  // namespace microinjection

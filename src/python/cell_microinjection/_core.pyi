@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 Floats = NDArray[numpy.float64]
 __version__: str
 trial_observation: tuple[str, ...]
+trial_states: tuple[str, ...]
 
 
 class ConfigError(ValueError): ...

@@ -20,7 +20,7 @@ from cell_microinjection import _core
 #: Names and units of an observation's numbers.
 OBSERVATION = _core.trial_observation
 #: Words for the number `state` of an observation.
-STATES = ('idle', 'approach', 'contact', 'indent', 'punctured', 'inject', 'withdraw', 'fault')
+STATES = _core.trial_states
 FASTEST = 200e-6  # m/s, along an axis
 _SEERS = ('vision', 'calibration', 'visual_servo', 'touch', 'focus')  # which find in images what a policy is to find
 
