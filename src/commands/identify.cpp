@@ -18,6 +18,7 @@
 #include "cell/identification/family_law.h"
 #include "cell/identification/identified_scene.h"
 #include "cell/identification/point_identification.h"
+#include "cell/identification/tongue_identification.h"
 #include "commands/identify_arguments.h"
 #include "commands/identify_report.h"
 #include "commands/scene_law.h"
@@ -64,23 +65,41 @@ bool isDetermined(const Identification& found) {
   return false;
 }
 
-int fitPoint(const IdentifyArguments& arguments, const std::optional<Scene>& scene) {
-  std::optional<Identification> first;
+/// Writes what was found by each model; the first one's is the scene's. `source`: what it was found from. `curve`: of
+/// the residuals; null: there are none.
+int conclude(const IdentifyArguments& arguments, const std::string& source,
+             const std::vector<std::pair<std::string, Identification>>& found, const ForceCurve* curve = nullptr) {
   std::string table = kEstimateColumns;
-  for (const std::string& model : arguments.models) {
-    const Identification found =
-        identifyPoint(*arguments.point, *makeLaw(model, scene, arguments, arguments.point->depth));
-    printIdentification(model, found);
-    table += estimateRows(model, found);
-    if (!first) first = found;
-  }
+  for (const auto& [model, identification] : found) table += estimateRows(model, identification);
+  const auto& [model, first] = found.front();
   flushStandardOutput();
   if (!arguments.csv.empty()) writeFileAtomically(arguments.csv, table);
-  if (!isDetermined(*first)) return kUndetermined;
-  if (!arguments.out.empty()) {
-    writeFileAtomically(arguments.out, identifiedScene(arguments.scene, "one point", *first));
+  if (!arguments.residuals.empty()) writeFileAtomically(arguments.residuals, residualTable(*curve, first));
+  if (!first.consistent()) {
+    std::cerr << "identify: " << model << " does not follow the record: no scene is written\n";
+    return kInconsistent;
   }
+  if (!isDetermined(first)) return kUndetermined;
+  if (!arguments.out.empty()) writeFileAtomically(arguments.out, identifiedScene(arguments.scene, source, first));
   return kFits;
+}
+
+int fitPoint(const IdentifyArguments& arguments, const std::optional<Scene>& scene) {
+  std::vector<std::pair<std::string, Identification>> found;
+  for (const std::string& model : arguments.models) {
+    found.emplace_back(model,
+                       identifyPoint(*arguments.point, *makeLaw(model, scene, arguments, arguments.point->depth)));
+    printIdentification(model, found.back().second);
+  }
+  return conclude(arguments, "one point", found);
+}
+
+int fitTongue(const IdentifyArguments& arguments, const Scene& scene) {
+  const TongueRecord record = readTongueRecord(arguments.tongue, arguments.curve.columns);
+  for (const std::string& note : record.notes) std::printf("%s: %s\n", arguments.tongue.c_str(), note.c_str());
+  const Identification found = identifyTongue(record, scene, TongueShape(scene));
+  printIdentification("tongue", found);
+  return conclude(arguments, arguments.tongue, {{"tongue", found}});
 }
 
 int run(int argc, char** argv) {
@@ -99,13 +118,13 @@ int run(int argc, char** argv) {
     errors.throwAny();
   }
   if (arguments.point) return fitPoint(arguments, scene);
+  if (!arguments.tongue.empty()) return fitTongue(arguments, *scene);
   const ForceCurve curve = identifiedCurve(readForceCurve(arguments.record, arguments.curve));
   std::vector<std::shared_ptr<ElasticLaw>> laws;
   for (const std::string& model : arguments.models) laws.push_back(makeLaw(model, scene, arguments, depthOf(curve)));
   for (const std::string& note : curve.notes) std::printf("%s: %s\n", arguments.record.c_str(), note.c_str());
 
-  std::vector<Identification> fits;
-  std::vector<std::string> names;
+  std::vector<std::pair<std::string, Identification>> fits;
   for (std::size_t i = 0; i < laws.size(); ++i) {
     try {
       IdentificationConfig config = arguments.identification;
@@ -113,34 +132,21 @@ int run(int argc, char** argv) {
         config.rivals =
             std::make_shared<const std::vector<RivalCell>>(rivalCells(loadFamilies(arguments.families), *scene));
       }
-      fits.push_back(identify(curve, laws[i], config));
-      names.push_back(arguments.models[i]);
-      printIdentification(names.back(), fits.back());
+      fits.emplace_back(arguments.models[i], identify(curve, laws[i], config));
+      printIdentification(arguments.models[i], fits.back().second);
     } catch (const ConfigError& error) {
       std::cerr << "identify: " << arguments.record << ": " << arguments.models[i] << ": " << error.what() << '\n';
       if (i == 0) return kFailed;
     }
   }
   if (fits.size() > 1) {
-    const std::vector<double> criteria = informationCriteria(fits);
+    std::vector<Identification> models;
+    for (const auto& [model, fit] : fits) models.push_back(fit);
+    const std::vector<double> criteria = informationCriteria(models);
     const auto best = std::min_element(criteria.begin(), criteria.end()) - criteria.begin();
-    std::printf("the information criterion prefers: %s\n", names[static_cast<std::size_t>(best)].c_str());
+    std::printf("the information criterion prefers: %s\n", fits[static_cast<std::size_t>(best)].first.c_str());
   }
-  const Identification& first = fits.front();
-  flushStandardOutput();
-  std::string table = kEstimateColumns;
-  for (std::size_t i = 0; i < fits.size(); ++i) table += estimateRows(names[i], fits[i]);
-  if (!arguments.csv.empty()) writeFileAtomically(arguments.csv, table);
-  if (!arguments.residuals.empty()) writeFileAtomically(arguments.residuals, residualTable(curve, first));
-  if (!first.consistent()) {
-    std::cerr << "identify: " << arguments.models[0] << " does not follow the record: no scene is written\n";
-    return kInconsistent;
-  }
-  if (!isDetermined(first)) return kUndetermined;
-  if (!arguments.out.empty()) {
-    writeFileAtomically(arguments.out, identifiedScene(arguments.scene, arguments.record, first));
-  }
-  return kFits;
+  return conclude(arguments, arguments.record, fits, &curve);
 }
 
 }  // namespace

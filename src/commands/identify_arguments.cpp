@@ -22,10 +22,14 @@ constexpr char kHelp[] = R"help(identify: which cell is it? Fits a recorded forc
 
 Usage: identify --record FILE [--scene FILE] [--model M1,M2,...] [--out SCENE] [...]
        identify --point DEPTH,FORCE --reading-error E --scene FILE --model solution [...]
+       identify --tongue FILE --scene FILE [--out SCENE] [...]
 
 The record is a table: a line of column names, then numbers. Names and units are found by themselves: time_s,
 "height (um)", force_nN, deflection_m, ... ; otherwise name them: --column force=Fz:uN. Signs, a sensor's offset and
 drift, outliers and missing rows may be as they come. Only the way in is used.
+
+Tongues are a table of pressures in the holding pipette and the lengths that they have drawn in, as images show them from
+any fixed place: "pressure (kPa)", tongue_um, ... ; the scene has the mouth (holding_pipette/mouth). It takes seconds.
 
 Models (each is fitted, and compared with the others):
   family    the converged force of the scene's cell; its modulus, and ratios that --free names; it is compared with
@@ -107,6 +111,16 @@ MeasuredPoint parsePoint(const std::string& text, double reading_error, double d
   return point;
 }
 
+/// Throws ConfigError for an option that tongues do not use.
+void requireFitTongue(const IdentifyArguments& arguments, const boost::program_options::variables_map& values) {
+  if (arguments.scene.empty()) throw ConfigError("--tongue: needs --scene, which has the mouth");
+  for (const auto& [name, value] : values) {
+    const bool used = name == "tongue" || name == "scene" || name == "out" || name == "csv" || name == "column";
+    if (!value.defaulted() && !used && !value.empty() && !(name == "whole" || name == "no-intervals"))
+      throw ConfigError("--" + name + ": must be left out with --tongue");
+  }
+}
+
 /// The scene has the modulus of these.
 bool isOfScene(const std::string& model) { return model == "family" || model == "solution" || model == "live"; }
 
@@ -124,6 +138,7 @@ std::optional<IdentifyArguments> parseIdentifyArguments(int argc, char** argv) {
   add("help", "this text");
   add("record", po::value(&arguments.record), "file with the record");
   add("point", po::value(&point), "DEPTH,FORCE: one published point instead of a record, m, N; the contact is at 0");
+  add("tongue", po::value(&arguments.tongue), "file of tongue lengths by suction, instead of a record");
   add("reading-error", po::value(&reading_error), "of the point's force, relative: half of its interval of 95 %");
   add("depth-error", po::value(&depth_error), "m, same, of the point's depth");
   add("scene", po::value(&arguments.scene), "file with the cell's sizes and the tip, SI units");
@@ -132,7 +147,8 @@ std::optional<IdentifyArguments> parseIdentifyArguments(int argc, char** argv) {
   add("prony", po::value(&arguments.identification.prony_terms)->default_value(0),
       "number of relaxation times to find");
   add("drift", po::value(&drift)->default_value("auto"), "of the sensor: auto, on or off");
-  add("column", po::value(&columns), "QUANTITY=NAME:UNIT; QUANTITY time, position, deflection or force");
+  add("column", po::value(&columns),
+      "QUANTITY=NAME:UNIT; QUANTITY time, position, deflection or force; pressure or tongue");
   add("position-of", po::value(&arguments.curve.position_of)->default_value("auto"),
       "whose the position is: tip, base of a lever that bends, or auto: by the column's name");
   add("spring-constant", po::value(&arguments.curve.spring_constant),
@@ -151,9 +167,10 @@ std::optional<IdentifyArguments> parseIdentifyArguments(int argc, char** argv) {
   add("no-intervals", po::bool_switch(&quick), "intervals from the curvature alone: quicker");
   po::variables_map values;
   if (!readCommandLine(wordsOf(argc, argv), options, "", values)) return std::nullopt;
-  if (arguments.record.empty() == point.empty()) {
-    throw ConfigError("--record, or else --point: one of them must be given, the file with the record");
+  if (!arguments.record.empty() + !point.empty() + !arguments.tongue.empty() != 1) {
+    throw ConfigError("--record, or else --point or --tongue: one of them must be given, the file with the record");
   }
+  if (!arguments.tongue.empty()) requireFitTongue(arguments, values);
   if (!point.empty()) {
     if (values.count("reading-error") == 0) throw ConfigError("--point: needs --reading-error");
     if (!arguments.residuals.empty()) throw ConfigError("--residuals: needs --record");
@@ -176,6 +193,7 @@ std::optional<IdentifyArguments> parseIdentifyArguments(int argc, char** argv) {
   if (!arguments.out.empty() && arguments.scene.empty()) throw ConfigError("--out: needs --scene, which it changes");
   OutputFiles()
       .reads("--record", arguments.record)
+      .reads("--tongue", arguments.tongue)
       .reads("--scene", arguments.scene)
       .reads("--families", arguments.families)
       .writes("--out", arguments.out)

@@ -26,7 +26,7 @@ void printIdentification(const std::string& model, const Identification& found) 
                 estimate.unit.c_str(), estimate.low, estimate.high, estimate.bounded ? "" : ", open on one side");
   }
   if (found.residuals.size() == 0) {
-    std::printf("  depth %.4g um, force there %.4g nN\n", 1e6 * found.depth, 1e9 * found.size);
+    if (found.depth > 0) std::printf("  depth %.4g um, force there %.4g nN\n", 1e6 * found.depth, 1e9 * found.size);
     for (const std::string& warning : found.warnings) std::printf("  note: %s\n", warning.c_str());
     return;
   }

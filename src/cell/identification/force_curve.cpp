@@ -9,8 +9,8 @@
 #include "base/median.h"
 #include "base/text_table.h"
 #include "cell/identification/drag.h"
-#include "cell/identification/force_columns.h"
 #include "cell/identification/other_rows.h"
+#include "cell/identification/record_columns.h"
 #include "cell/identification/way_in.h"
 
 namespace microinjection {
@@ -131,7 +131,7 @@ void cutHeldForce(ForceCurve& curve) {
 }
 
 /// Whether the position is that of a lever's base. Throws ConfigError where it cannot be known.
-bool isOfBase(const TextTable& table, const ForceColumn& position, bool has_deflection, const ForceCurveConfig& config,
+bool isOfBase(const TextTable& table, const RecordColumn& position, bool has_deflection, const ForceCurveConfig& config,
               std::vector<std::string>& notes) {
   const std::string column = "column '" + table.titles()[position.index] + "'";
   const auto is_any = [&](std::initializer_list<const char*> names) {
@@ -167,7 +167,8 @@ ForceCurve readForceCurve(const std::string& path, const ForceCurveConfig& confi
   const TextTable table = readTextTable(path);
   ForceCurve curve;
   curve.notes = table.notes;
-  const std::map<std::string, ForceColumn> columns = findForceColumns(table, config.columns, curve.notes);
+  const std::map<std::string, RecordColumn> columns =
+      findRecordColumns(table, RecordKind::kForce, config.columns, curve.notes);
   const auto valueOf = [&](const char* quantity, std::size_t row, double otherwise) {
     const auto found = columns.find(quantity);
     return found == columns.end() ? otherwise : found->second.unit * table.columns[found->second.index].values[row];

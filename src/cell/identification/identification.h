@@ -25,13 +25,14 @@ struct Estimate {
 struct Identification {
   std::string model;  ///< one line
   std::vector<Estimate> estimates;
-  double noise = 0;                   ///< N, robust deviation of the residuals
-  double independent = 0;             ///< number of independent samples
-  double deviation = 0;               ///< N, rms of the residuals without the largest fiftieth
-  double misfit = 0;                  ///< N, rms of the residuals' smooth part in contact: what the model cannot follow
-  double scatter = 0;                 ///< N, what noise alone would leave of it
-  double size = 0;                    ///< N, of the cell's force at the deepest sample
-  double depth = 0;                   ///< m, of the deepest sample
+  double noise = 0;        ///< N, robust deviation of the residuals
+  double independent = 0;  ///< number of independent samples
+  double deviation = 0;    ///< N, rms of the residuals without the largest fiftieth
+  /// These three are N, and of tongues m.
+  double misfit = 0;   ///< rms of the residuals' smooth part in contact: what the model cannot follow
+  double scatter = 0;  ///< what noise alone would leave of it
+  double size = 0;     ///< of the cell's force at the deepest sample; of the longest tongue over the shortest
+  double depth = 0;    ///< m, of the deepest sample
   std::vector<std::string> warnings;  ///< what cannot be told apart, what is out of range
   Eigen::VectorXd residuals;          ///< N, of each sample
   std::optional<RivalComparison> rivals;

@@ -7,17 +7,13 @@
 #include <set>
 
 #include "base/errors.h"
+#include "base/lower_case.h"
 #include "base/parse_number.h"
 
 namespace microinjection {
 namespace {
 
 constexpr std::size_t kShown = 60;  ///< characters of a list, about
-
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
 
 /// Of a column of texts, numbers or both.
 std::vector<std::string> textsOf(const TextTable::Column& column) {
@@ -46,7 +42,7 @@ bool isWithin(const std::string& option, const std::string& limit, std::size_t r
 
 OtherRows::OtherRows(const TextTable& table, const ForceCurveConfig& config) : config_(config) {
   for (const TextTable::Column& column : table.columns) {
-    const std::string title = lower(column.title);
+    const std::string title = lowerCase(column.title);
     if (title == "segment") segments_ = textsOf(column);
     if (title == "punctured" || title == "layers_punctured") punctured_ = &column.values;
   }
@@ -85,10 +81,10 @@ void OtherRows::tell(std::vector<std::string>& notes) const {
 }
 
 bool OtherRows::isUsed(const std::string& segment) const {
-  if (!config_.segment.empty()) return lower(segment) == lower(config_.segment);
+  if (!config_.segment.empty()) return lowerCase(segment) == lowerCase(config_.segment);
   static const char* const kWords[] = {"approach", "extend", "extension", "trace", "loading",
                                        "load",     "indent", "forward",   "in"};
-  const std::string word = lower(segment);
+  const std::string word = lowerCase(segment);
   return std::any_of(std::begin(kWords), std::end(kWords), [&](const char* each) { return word == each; });
 }
 

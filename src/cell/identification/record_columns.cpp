@@ -1,10 +1,11 @@
-#include "cell/identification/force_columns.h"
+#include "cell/identification/record_columns.h"
 
 #include <algorithm>
 #include <cctype>
 #include <optional>
 
 #include "base/errors.h"
+#include "base/lower_case.h"
 
 namespace microinjection {
 namespace {
@@ -13,23 +14,26 @@ struct Quantity {
   std::string name;
   std::vector<std::string> names;  ///< in order of preference
   std::map<std::string, double> units;
+  bool required = false;
 };
 
-const std::vector<Quantity>& quantities() {
+const std::vector<Quantity>& quantities(RecordKind kind) {
   static const std::map<std::string, double> lengths = {{"m", 1}, {"mm", 1e-3}, {"um", 1e-6}, {"nm", 1e-9}};
-  static const std::vector<Quantity> all = {
+  static const std::vector<Quantity> force = {
       {"time", {"time", "t"}, {{"s", 1}, {"ms", 1e-3}, {"us", 1e-6}}},
-      {"position", {"tip", "position", "tip_z", "depth", "indentation", "height", "z"}, lengths},
+      {"position", {"tip", "position", "tip_z", "depth", "indentation", "height", "z"}, lengths, true},
       {"deflection", {"deflection"}, lengths},
       {"force",
        {"force", "force_z", "force_axial", "measured_axial", "f"},
-       {{"N", 1}, {"mN", 1e-3}, {"uN", 1e-6}, {"nN", 1e-9}, {"pN", 1e-12}}}};
-  return all;
-}
-
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
+       {{"N", 1}, {"mN", 1e-3}, {"uN", 1e-6}, {"nN", 1e-9}, {"pN", 1e-12}},
+       true}};
+  static const std::vector<Quantity> tongue = {
+      {"pressure",
+       {"pressure", "suction", "p"},
+       {{"Pa", 1}, {"hPa", 100}, {"kPa", 1e3}, {"mbar", 100}, {"mmHg", 133.322}, {"cmH2O", 98.0665}, {"psi", 6894.76}},
+       true},
+      {"tongue", {"tongue_length", "tongue", "aspirated_length", "projection", "length", "l"}, lengths, true}};
+  return kind == RecordKind::kForce ? force : tongue;
 }
 
 /// "Height (um)" -> "height", "um"; "force_z_N" -> "force_z", "N".
@@ -41,8 +45,8 @@ std::pair<std::string, std::string> split(const std::string& title) {
     if (!separates && std::string(")]").find(c) == std::string::npos) words += c;
   }
   const std::size_t last = words.rfind('_');
-  if (last == std::string::npos) return {lower(words), ""};
-  return {lower(words.substr(0, last)), words.substr(last + 1)};
+  if (last == std::string::npos) return {lowerCase(words), ""};
+  return {lowerCase(words.substr(0, last)), words.substr(last + 1)};
 }
 
 std::string allowed(const Quantity& quantity) {
@@ -78,16 +82,16 @@ bool isNamed(const std::string& own, const std::string& name) {
                          own.compare(own.size() - behind_comma.size(), std::string::npos, behind_comma) == 0);
 }
 
-std::optional<ForceColumn> search(const Quantity& quantity, const TextTable& table) {
+std::optional<RecordColumn> search(const Quantity& quantity, const TextTable& table) {
   const std::vector<std::string> titles = table.titles();
   for (const std::string& name : quantity.names) {
     for (std::size_t i = 0; i < titles.size(); ++i) {
-      if (table.columns[i].clock && quantity.name == "time") return ForceColumn{i, 1, name};
+      if (table.columns[i].clock && quantity.name == "time") return RecordColumn{i, 1, name};
       auto [own, unit] = split(titles[i]);
-      if (lower(titles[i]) == name) own = name, unit.clear();
+      if (lowerCase(titles[i]) == name) own = name, unit.clear();
       if (!isNamed(own, name)) continue;
       if (!unit.empty())
-        return ForceColumn{i, unitOf(quantity, unit, table.path + ": column '" + titles[i] + "'"), name};
+        return RecordColumn{i, unitOf(quantity, unit, table.path + ": column '" + titles[i] + "'"), name};
       throw ConfigError(table.path + ": column '" + titles[i] + "': has no unit; give --column " + quantity.name + "=" +
                         titles[i] + ":UNIT, UNIT one of " + allowed(quantity));
     }
@@ -106,36 +110,36 @@ std::string shown(const TextTable& table) {
 }
 
 /// A column without numbers is none; one that must be there is an error.
-bool hasNumbers(const TextTable& table, const std::string& quantity, const ForceColumn& column) {
+bool hasNumbers(const TextTable& table, const Quantity& quantity, const RecordColumn& column) {
   const TextTable::Column& found = table.columns[column.index];
   if (found.numbers > 0) return true;
-  if (quantity != "position" && quantity != "force") return false;
+  if (!quantity.required) return false;
   std::string text = table.path;
   if (found.text_line > 0) text += ", line " + std::to_string(found.text_line);
-  throw ConfigError(text + ": column '" + table.titles()[column.index] + "', the " + quantity + ", has no numbers" +
-                    (found.text.empty() ? "" : ", but '" + found.text + "'"));
+  throw ConfigError(text + ": column '" + table.titles()[column.index] + "', the " + quantity.name +
+                    ", has no numbers" + (found.text.empty() ? "" : ", but '" + found.text + "'"));
 }
 
 }  // namespace
 
-std::map<std::string, ForceColumn> findForceColumns(const TextTable& table,
-                                                    const std::map<std::string, std::string>& given,
-                                                    std::vector<std::string>& notes) {
-  std::map<std::string, ForceColumn> columns;
-  for (const Quantity& quantity : quantities()) {
+std::map<std::string, RecordColumn> findRecordColumns(const TextTable& table, RecordKind kind,
+                                                      const std::map<std::string, std::string>& given,
+                                                      std::vector<std::string>& notes) {
+  std::map<std::string, RecordColumn> columns;
+  for (const Quantity& quantity : quantities(kind)) {
     const auto named = given.find(quantity.name);
-    std::optional<ForceColumn> found;
+    std::optional<RecordColumn> found;
     if (named == given.end()) {
       found = search(quantity, table);
     } else {
       const std::string where = "--column " + quantity.name + "=" + named->second;
       const std::size_t colon = named->second.rfind(':');
       if (colon == std::string::npos) throw ConfigError(where + ": must be NAME:UNIT");
-      found = ForceColumn{indexOf(named->second.substr(0, colon), table.titles(), where),
-                          unitOf(quantity, named->second.substr(colon + 1), where), ""};
+      found = RecordColumn{indexOf(named->second.substr(0, colon), table.titles(), where),
+                           unitOf(quantity, named->second.substr(colon + 1), where), ""};
     }
     if (!found) continue;
-    if (hasNumbers(table, quantity.name, *found)) {
+    if (hasNumbers(table, quantity, *found)) {
       columns[quantity.name] = *found;
     } else {
       const std::string& text = table.columns[found->index].text;
@@ -143,13 +147,15 @@ std::map<std::string, ForceColumn> findForceColumns(const TextTable& table,
                       (text.empty() ? "" : ", but '" + text + "',") + " and is left out");
     }
   }
+  std::string names;
+  for (const Quantity& quantity : quantities(kind)) names += (names.empty() ? "" : ", ") + quantity.name;
   for (const auto& [name, column] : given) {
-    const bool known = std::any_of(quantities().begin(), quantities().end(),
+    const bool known = std::any_of(quantities(kind).begin(), quantities(kind).end(),
                                    [name = name](const Quantity& quantity) { return quantity.name == name; });
-    if (!known) throw ConfigError("--column " + name + ": must be one of time, position, deflection, force");
+    if (!known) throw ConfigError("--column " + name + ": must be one of " + names);
   }
-  for (const char* name : {"position", "force"}) {
-    if (columns.count(name) > 0) continue;
+  for (const auto& [name, titles, units, required] : quantities(kind)) {
+    if (!required || columns.count(name) > 0) continue;
     const std::string before = table.before.empty() ? "" : " (above it is '" + table.before.substr(0, 60) + "')";
     const std::string titled = table.title_line > 0
                                    ? "line " + std::to_string(table.title_line) + " has the columns " + shown(table)
