@@ -315,6 +315,31 @@ class ATaskTest(unittest.TestCase):
             observation, _, done, late, _ = env.step([0, 0, speed])
         self.assertTrue(done)
 
+    def test_has_faults_only_where_they_are_asked_for_and_the_same_ones_each_time(self):
+        told = {}
+        for seed in range(12):
+            _, _, info = self.run_through(gym.Inject(steps=10, faults=0.5), seed)
+            told[seed] = info['fault']
+            if seed < 2:
+                self.assertNotIn('fault', self.run_through(gym.Inject(steps=10), seed)[2])
+                self.assertEqual(self.run_through(gym.Inject(steps=10, faults=0.5), seed)[2], info)
+        faults = [fault for fault in told.values() if fault]
+        self.assertTrue(0 < len(faults) < 12, told)
+        self.assertTrue(all(set(fault) == {'kind', 'begin_s', 'size'} for fault in faults))
+        with self.assertRaisesRegex(cm.ConfigError, 'faults: must be from 0 to 1'):
+            gym.Inject(faults=2).reset(seed=1)
+
+    def test_tells_the_fault_at_the_end_of_a_press_too(self):
+        env = gym.IndentToForce(steps=1000, faults=1)
+        env.reset(seed=3)
+        over = False
+        while not over:
+            _, _, done, late, info = env.step([0, 0, 0])
+            over = done or late
+            self.assertEqual('fault' in info, over)
+        self.assertIn(info['fault']['kind'], ('sensor_frozen', 'sensor_offset', 'sensor_drift', 'commands_lost', 'commands_late',
+                                              'needle_drift'))
+
     def test_to_press_cannot_be_done_by_resting(self):
         for seed in range(20):
             env = gym.IndentToForce(steps=100)
