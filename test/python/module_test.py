@@ -241,6 +241,19 @@ class AnImageTest(unittest.TestCase):
                 self.assertAlmostEqual(measured.centre[0], 320.3, delta=0.5)
                 self.assertAlmostEqual(measured.centre[1], 239.6, delta=0.5)
 
+    def test_that_is_rendered_has_what_its_truth_says(self):
+        image, truth = cm.render_specimen(7)
+        self.assertEqual((image.shape, image.dtype), ((1040, 1392), numpy.uint8))
+        numpy.testing.assert_array_equal(image, cm.render_specimen(7)[0])
+        numpy.testing.assert_allclose(cm.find_tip(image)['place'], truth['tip'], atol=1)
+        measured = cm.measure_cell(image, truth['pixel_size'])
+        numpy.testing.assert_allclose(measured.centre, truth['centre'], atol=1)
+        self.assertAlmostEqual(measured.diameter[0] / truth['pixel_size'], truth['diameter'], delta=1)
+        noisy, same = cm.render_specimen(7, {'sensor': {'gain': 2, 'bits': 16}})
+        self.assertEqual((noisy.dtype, same), (numpy.uint16, truth))
+        with self.assertRaisesRegex(cm.ConfigError, 'unknown key'):
+            cm.render_specimen(7, {'sensors': {}})
+
     def test_must_be_one(self):
         for wrong, part in ((numpy.zeros((4, 4)), 'float64: must be uint8 or uint16'),
                             (numpy.zeros(4, numpy.uint8), 'shape'), ('x', 'image')):

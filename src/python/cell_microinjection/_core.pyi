@@ -72,6 +72,10 @@ class Vision:
     def see(self, image: NDArray[Any], pixel_size: float) -> dict[str, dict[str, Any]]: ...
 
 
+# The image, (height, width), and its truth: pixel_size, m; tip and centre, (x, y), and diameter, px.
+def render_specimen(seed: int, config: dict[str, Any] = ...) -> tuple[NDArray[Any], dict[str, Any]]: ...
+
+
 class Calibration:
     @staticmethod
     def load(path: Union[str, PathLike[str]]) -> Calibration: ...
