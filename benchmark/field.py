@@ -54,6 +54,7 @@ NOISE = 0.01                # of the largest force, standard deviation of a read
 PERIOD = 10                 # ms, of a policy
 GAINS = 8, 40               # electrons a grey level, of the images' sensors: noisy to usual
 SHOWN = 8                   # px within the image, of what is to be found in it
+MARKERS = 'os^Dv*P'         # of the picture
 TASKS = 'force', 'modulus', 'policy', 'tip', 'cell'
 LINES = ('task', 'entry', 'cases', 'median', 'nine of ten', 'worst', 'failed', 'us a force', 'ms a cell or image', 'prepared in s', 'broke even')
 
@@ -368,15 +369,14 @@ def draw(rows, path):
     forces = [dict(zip(LINES, row)) for row in rows if row[0] == 'force' and row[3] != '']
     for number, row in enumerate(sorted(forces, key=lambda row: float(row['us a force']))):
         cost, middle, common = (float(row[name]) for name in ('us a force', 'median', 'nine of ten'))
-        axes.errorbar([cost], [middle], yerr=[[0], [common - middle]], fmt='o', capsize=3)
-        axes.annotate(row['entry'], (cost, middle), textcoords='offset points', xytext=(8, 4) if number % 2 else (-8, 4),
-                      ha='left' if number % 2 else 'right')
+        axes.errorbar([cost], [middle], yerr=[[0], [common - middle]], fmt=MARKERS[number % len(MARKERS)], capsize=3, label=row['entry'])
     axes.set_xscale('log')
     axes.set_yscale('log')
     axes.margins(x=0.12, y=0.1)
     axes.set_xlabel('time of a force (us)')
     axes.set_ylabel('error of the force (%), median and nine of ten')
     axes.grid(True, which='both', alpha=0.2)
+    axes.legend(loc='upper left', bbox_to_anchor=(1, 1), title='the quickest first')
     figure.tight_layout()
     figure.savefig(path, dpi=120)
 
