@@ -1,11 +1,12 @@
 #!/usr/bin/python3
-"""Tasks that anybody's program can enter: a tool's force with its error, a cell's modulus, an injection of random cells.
+"""Tasks that anybody's program can enter: a tool's force, a cell's modulus, an injection, and what an image shows.
 
     ./dev bench field                                  # all entries that are here
     ./dev bench field -- --entry mine.py --seed 7      # and a stranger's, on cells that nobody has seen
 
 The cells are drawn from the seed, so that nobody can tune to them, and the reference of each force is solved here, on
-finer and finer meshes until it is known to 0.3 %. An entry is a Python file with any of
+finer and finer meshes until it is known to 0.3 %. The images are the virtual microscope's, which knows their truth. An
+entry is a Python file with any of
 
     def force(scene, depths):             scene: a dict as a scene file; depths: m, (n,)
         return forces                     # N, along the pipette, (n,); nan where there is none
@@ -14,6 +15,13 @@ finer and finer meshes until it is known to 0.3 %. An entry is a Python file wit
     def policy(observation):              names in cell_microinjection.gym.OBSERVATION; asked each 10 ms
         return vx, vy, vz, inject         # m/s, and whether to inject
     def prepare(scenes): ...              # once, before any force; its time is told
+    def tip(image, scale):                image: (height, width), uint8; scale: m/px
+        return x, y                       # px, of the injection pipette's tip; nan where it is not sure
+    def cell(image, scale):
+        return x, y, diameter             # px, of the cell without its dimple; nan where it is not sure
+
+Bullet, CalculiX and GetFEM enter where ./dev setup --peers has installed them. They are programs, which are started for each
+cell: the time of a force is that of the steps to it, as the program states it.
 """
 import argparse
 import copy
@@ -22,22 +30,33 @@ import importlib.util
 import os
 import platform
 import sys
+import tempfile
 import time
 from pathlib import Path
 
 import matplotlib
 import numpy
 
-from cell_microinjection import Cell, ConfigError, Scene, __version__, gym, identify, indent
+from cell_microinjection import (Cell, ConfigError, Scene, __version__, find_tip, gym, identify, indent, measure_cell,
+                                 render_specimen)
 
 matplotlib.use('Agg')
 import matplotlib.pyplot as plt  # noqa: E402  the backend is chosen before
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT / 'benchmark' / 'peers'))
+
+import peer_entries  # noqa: E402
 
 REFERENCE = 0.003           # relative error that a reference may have
 SHARES = numpy.linspace(0.02, 0.2, 10)  # depths of a reference, over the diameter
 NOISE = 0.01                # of the largest force, standard deviation of a reading
 PERIOD = 10                 # ms, of a policy
-LINES = ('task', 'entry', 'cases', 'median', 'nine of ten', 'worst', 'failed', 'us a force', 'ms a cell', 'prepared in s', 'broke even')
+GAINS = 8, 40               # electrons a grey level, of the images' sensors: noisy to usual
+SHOWN = 8                   # px within the image, of what is to be found in it
+MARKERS = 'os^Dv*P'         # of the picture
+TASKS = 'force', 'modulus', 'policy', 'tip', 'cell'
+LINES = ('task', 'entry', 'cases', 'median', 'nine of ten', 'worst', 'failed', 'us a force', 'ms a cell or image', 'prepared in s', 'broke even')
 
 
 def drawn_scenes(count, seed):
@@ -172,22 +191,41 @@ class Proportional:
         return 0, 0, -speed * diameter, 0
 
 
+class Eyes:
+    """What is sure of all that the node `vision` sees in a first image."""
+
+    @staticmethod
+    def tip(image, scale):
+        found = find_tip(image)
+        return found['place'] if found['verdict'] == 'found' else (numpy.nan, numpy.nan)
+
+    @staticmethod
+    def cell(image, scale):
+        found = measure_cell(image, scale)
+        return (*found.centre, found.diameter[0] / scale) if found.verdict == 'found' else [numpy.nan] * 3
+
+
 def load_entry(path):
     spec = importlib.util.spec_from_file_location(Path(path).stem, path)
     if spec is None:
         raise ConfigError(f'--entry {path}: is no Python file')
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    if not any(hasattr(module, name) for name in ('force', 'modulus', 'policy')):
-        raise ConfigError(f'--entry {path}: has none of the functions force, modulus and policy')
+    if not any(hasattr(module, name) for name in TASKS):
+        raise ConfigError(f'--entry {path}: has none of the functions {", ".join(TASKS)}')
     return module
 
 
-def quantiles(errors):
-    errors = numpy.sort(errors)
+def short(number):
+    """As text with two digits."""
+    return f'{float(f"{number:.2g}"):g}'
+
+
+def quantiles(errors, scale=100):
+    errors = scale * numpy.sort(errors)
     if not len(errors):
         return '', '', ''
-    return tuple(f'{100 * errors[int(share * (len(errors) - 1))]:.2g}' for share in (0.5, 0.9, 1))
+    return tuple(short(errors[int(share * (len(errors) - 1))]) for share in (0.5, 0.9, 1))
 
 
 def references(scenes):
@@ -211,6 +249,8 @@ def asked(function, *arguments, count):
     begin = time.perf_counter()
     try:
         found = numpy.asarray(function(*own), dtype=float).reshape(-1)
+    except peer_entries.Declined:
+        raise
     except Exception as error:  # pylint: disable=broad-except  a stranger's program may raise anything
         print(f'field: {type(error).__name__}: {error}', file=sys.stderr)
         found = numpy.full(count, numpy.nan)
@@ -223,22 +263,28 @@ def score_force(name, entry, known, solved_in):
     if hasattr(entry, 'prepare'):
         entry.prepare([copy.deepcopy(scene) for scene, _, _ in known])
     prepared = time.perf_counter() - begin
+    is_peer = isinstance(entry, peer_entries.Peer)
+    known = known[:entry.cells] if is_peer else known
     errors, failed, costs, first = [], 0, [], []
     for scene, depths, truth in known:
         count = len(depths)
-        _, took = asked(entry.force, scene, 0.93 * depths, count=count)     # the first call for a cell may set it up
-        _, again = asked(entry.force, scene, 0.97 * depths, count=count)    # other depths: nothing can be remembered
-        found, _ = asked(entry.force, scene, depths, count=count)
-        costs.append(again / count)
-        first.append(max(took - again, 0))
+        if not is_peer:
+            _, took = asked(entry.force, scene, 0.93 * depths, count=count)   # the first call for a cell may set it up
+            _, again = asked(entry.force, scene, 0.97 * depths, count=count)  # other depths: nothing can be remembered
+            costs.append(again / count)
+            first.append(max(took - again, 0))
+        found, took = asked(entry.force, scene, depths, count=count)
+        if is_peer:
+            costs.extend(entry.times)
+            first.append(max(took - sum(entry.times), 0))
         good = numpy.isfinite(found)
         failed += int((~good).sum())
         errors.extend(numpy.abs(found[good] / truth[good] - 1))
     cost = numpy.median(costs)
     even = f'{prepared / (solved_in - cost):.0f}' if prepared > 0.01 and cost < solved_in else ''
     told = f'{prepared:.3g}' if prepared > 0.01 else ''
-    return ('force', name, sum(len(depths) for _, depths, _ in known), *quantiles(errors), failed, f'{1e6 * cost:.2g}',
-            f'{1e3 * numpy.median(first):.2g}', told, even)
+    return ('force', name, sum(len(depths) for _, depths, _ in known), *quantiles(errors), failed, short(1e6 * cost),
+            short(1e3 * numpy.median(first)), told, even)
 
 
 def score_modulus(name, entry, known, seed):
@@ -287,21 +333,50 @@ def score_policy(name, entry, cells):
             len(cells) - injected, '', '', '', '')
 
 
+def rendered(count, seed):
+    """@returns [(image, truth)]"""
+    random = numpy.random.default_rng(seed)
+    return [render_specimen(int(random.integers(1, 2**31 - 1)), {'sensor': {'gain': random.uniform(*GAINS)}})
+            for _ in range(count)]
+
+
+def score_seeing(name, entry, shown):
+    """Errors in px. An image in which the tip, or the cell's centre, is outside is not asked for it."""
+    rows = []
+    for what, keys in (('tip', ('tip',)), ('cell', ('centre', 'diameter'))):
+        off, times = [], []
+        for image, truth in shown if hasattr(entry, what) else []:
+            wanted = numpy.concatenate([numpy.atleast_1d(truth[key]) for key in keys])
+            if not all(SHOWN <= place < size - SHOWN for place, size in zip(wanted, reversed(image.shape))):
+                continue
+            found, took = asked(getattr(entry, what), image, truth['pixel_size'], count=len(wanted))
+            off.append(found - wanted)
+            times.append(took)
+        if not off:
+            continue
+        good = numpy.array([each for each in off if numpy.isfinite(each).all()]).reshape(-1, len(off[0]))
+        errors = {f'{what}, px': numpy.hypot(good[:, 0], good[:, 1])}
+        if what == 'cell':
+            errors['diameter, px'] = numpy.abs(good[:, 2])
+        rows.extend((task, name, len(off), *quantiles(each, 1), len(off) - len(good), '', short(1e3 * numpy.median(times)), '', '')
+                    for task, each in errors.items())
+    return rows
+
+
 def draw(rows, path):
     """The picture of a table's forces."""
     figure, axes = plt.subplots(figsize=(7, 4.5))
     forces = [dict(zip(LINES, row)) for row in rows if row[0] == 'force' and row[3] != '']
     for number, row in enumerate(sorted(forces, key=lambda row: float(row['us a force']))):
         cost, middle, common = (float(row[name]) for name in ('us a force', 'median', 'nine of ten'))
-        axes.errorbar([cost], [middle], yerr=[[0], [common - middle]], fmt='o', capsize=3)
-        axes.annotate(row['entry'], (cost, middle), textcoords='offset points', xytext=(8, 4) if number % 2 else (-8, 4),
-                      ha='left' if number % 2 else 'right')
+        axes.errorbar([cost], [middle], yerr=[[0], [common - middle]], fmt=MARKERS[number % len(MARKERS)], capsize=3, label=row['entry'])
     axes.set_xscale('log')
     axes.set_yscale('log')
     axes.margins(x=0.12, y=0.1)
     axes.set_xlabel('time of a force (us)')
     axes.set_ylabel('error of the force (%), median and nine of ten')
     axes.grid(True, which='both', alpha=0.2)
+    axes.legend(loc='upper left', bbox_to_anchor=(1, 1), title='the quickest first')
     figure.tight_layout()
     figure.savefig(path, dpi=120)
 
@@ -312,43 +387,70 @@ def parse_arguments():
     parser.add_argument('--seed', type=int, default=1, help='of the cells (default %(default)s)')
     parser.add_argument('--cells', type=int, default=24, help='whose force is asked for (default %(default)s)')
     parser.add_argument('--injections', type=int, default=200, help='random cells for policies (default %(default)s)')
+    parser.add_argument('--images', type=int, default=100, help='in which tip and cell are searched (default %(default)s)')
     parser.add_argument('--entry', type=Path, action='append', default=[], help='file of an entry; may be repeated')
     parser.add_argument('--network', type=int, default=60, help='cells that the network is trained on; 0: without it')
     parser.add_argument('--without', default='', help='entries that are left out, with commas between them')
+    parser.add_argument('--time-limit', type=float, default=300, help='s, for a program on one cell (default %(default)s)')
+    parser.add_argument('--programs', type=Path, default=ROOT / 'catkin_ws' / 'devel' / 'lib' / 'cell_microinjection',
+                        help='folder of the built programs')
     return parser.parse_args()
 
 
-def entries_of(arguments):
-    entries = {'family': Family(), 'live': Ours('live'), 'hertz': Hertz, 'shell': Shell, 'proportional': Proportional}
+def entries_of(arguments, folder):
+    """folder: of the peers' cases"""
+    left_out = arguments.without.split(',')
+    entries = {'family': Family(), 'live': Ours('live'), 'hertz': Hertz, 'shell': Shell, 'proportional': Proportional,
+               'eyes': Eyes}
+    peers, missing = peer_entries.entries(arguments.programs.resolve(), folder, arguments.time_limit)
+    entries.update(peers)
+    for name in missing.keys() - set(left_out):
+        print(f'field: {name} is left out: {missing[name]}', file=sys.stderr)
     if arguments.network and importlib.util.find_spec('torch'):
         entries['network'] = Network(arguments.network, arguments.seed + 1000)
     for path in arguments.entry:
         if path.stem in entries:
             raise ConfigError(f'--entry {path}: {path.stem} is there already: give it another name')
         entries[path.stem] = load_entry(path)
-    return {name: entry for name, entry in entries.items() if name not in arguments.without.split(',')}
+    return {name: entry for name, entry in entries.items() if name not in left_out}
+
+
+def scored(name, entry, known, solved_in, shown, arguments):
+    """@returns the rows of an entry"""
+    rows = []
+    if hasattr(entry, 'force'):
+        rows.append(score_force(name, entry, known, solved_in))
+    if hasattr(entry, 'modulus'):
+        rows.append(score_modulus(name, entry, known, arguments.seed))
+    if hasattr(entry, 'policy'):
+        cells = numpy.random.default_rng(arguments.seed).integers(1, 2**31 - 1, arguments.injections)
+        rows.append(score_policy(name, entry, cells))
+    return rows + score_seeing(name, entry, shown)
 
 
 def main():
     arguments = parse_arguments()
-    try:
-        entries = entries_of(arguments)
-    except (ConfigError, OSError, SyntaxError) as error:
-        sys.exit(f'field: {error}')
+    with tempfile.TemporaryDirectory() as folder:
+        try:
+            entries = entries_of(arguments, Path(folder))
+        except (ConfigError, OSError, SyntaxError) as error:
+            sys.exit(f'field: {error}')
+        run(arguments, entries)
+
+
+def run(arguments, entries):
     print(f'machine: {platform.machine()}, {os.cpu_count()} cores; version {__version__}; seed {arguments.seed}')
     begin = time.perf_counter()
     known = references(drawn_scenes(arguments.cells, arguments.seed))
     solved_in = (time.perf_counter() - begin) / max(sum(len(depths) for _, depths, _ in known), 1)
+    shown = rendered(arguments.images, arguments.seed)
     rows = []
     for name, entry in entries.items():
         print(f'field: {name}', file=sys.stderr)
-        if hasattr(entry, 'force'):
-            rows.append(score_force(name, entry, known, solved_in))
-        if hasattr(entry, 'modulus'):
-            rows.append(score_modulus(name, entry, known, arguments.seed))
-        if hasattr(entry, 'policy'):
-            cells = numpy.random.default_rng(arguments.seed).integers(1, 2**31 - 1, arguments.injections)
-            rows.append(score_policy(name, entry, cells))
+        try:
+            rows.extend(scored(name, entry, known, solved_in, shown, arguments))
+        except peer_entries.Declined as reason:
+            print(f'field: {name} is left out: {reason}', file=sys.stderr)
     with (arguments.out / 'field.csv').open('w', encoding='utf-8', newline='') as file:
         table = csv.writer(file)
         table.writerow(LINES)

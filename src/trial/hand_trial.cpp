@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <random>
 #include <sstream>
 
 #include "base/errors.h"
@@ -37,15 +38,66 @@ TrainingTask taskOf(const InjectionCase& of, const PulseGoal& pulse) {
 
 }  // namespace
 
+InjectionRig::Disturbance randomFault(const InjectionCase& of, double share) {
+  using Kind = InjectionRig::Disturbance::Kind;
+  constexpr Kind kKinds[] = {Kind::kSensorFrozen, Kind::kSensorOffset, Kind::kSensorDrift,
+                             Kind::kRigStands,    Kind::kCommandsLate, Kind::kNeedleDrift};
+  std::mt19937 random(static_cast<unsigned>(of.seed) + 700000);
+  const auto even = [&](double low, double high) { return low + (high - low) * (random() / 4294967296.0); };
+  const auto eitherSign = [&](double low, double high) {
+    return (even(-1, 1) < 0 ? -1 : 1) * low * std::pow(high / low, even(0, 1));
+  };
+  if (even(0, 1) >= share) return {};
+  const double strength = of.cell.puncture.layers.front().force;
+  InjectionRig::Disturbance fault;
+  fault.kind = kKinds[static_cast<std::size_t>(even(0, std::size(kKinds)))];
+  fault.begin = even(0.5, 8);
+  if (fault.kind == Kind::kSensorOffset) fault.size = strength * eitherSign(0.1, 1);
+  if (fault.kind == Kind::kSensorDrift) fault.size = strength * eitherSign(0.02, 0.2);
+  if (fault.kind == Kind::kCommandsLate) fault.size = even(0.05, 0.3);
+  if (fault.kind == Kind::kNeedleDrift) fault.size = eitherSign(0.1e-6, 1e-6);
+  return fault;
+}
+
+std::string toText(InjectionRig::Disturbance::Kind kind) {
+  using Kind = InjectionRig::Disturbance::Kind;
+  switch (kind) {
+    case Kind::kNone:
+      return "";
+    case Kind::kForceLost:
+      return "force_lost";
+    case Kind::kNeedleLost:
+      return "needle_lost";
+    case Kind::kRigStands:
+      return "commands_lost";
+    case Kind::kInjectorDead:
+      return "injector_dead";
+    case Kind::kSensorFrozen:
+      return "sensor_frozen";
+    case Kind::kSensorOffset:
+      return "sensor_offset";
+    case Kind::kSensorDrift:
+      return "sensor_drift";
+    case Kind::kCommandsLate:
+      return "commands_late";
+    case Kind::kNeedleDrift:
+      return "needle_drift";
+  }
+  return "";
+}
+
 HandTrial::HandTrial(const TrialCell& cell, const Config& config) : of_(randomInjectionCase(config.seed)) {
   if (!(config.force_delay >= 0 && config.force_delay <= 1)) throw ConfigError("force_delay: must be from 0 to 1 s");
   if (!(config.noise >= 0 && config.noise <= 100)) throw ConfigError("noise: must be from 0 to 100");
+  if (!(config.faults >= 0 && config.faults <= 1)) throw ConfigError("faults: must be from 0 to 1");
+  fault_ = randomFault(of_, config.faults);
   settings_ = injectionSettings(of_);
   settings_.mode = "manual";
   task_ = taskOf(of_, settings_.goal.pulse);
   cell_ = std::make_unique<ScaledCell>(cell.scene, cell.data, of_.cell);
   InjectionRig::Config rig;
   rig.controller = settings_;
+  rig.disturbance = fault_;
   rig.sensor.seed = config.seed;
   for (Eigen::Vector2d* noise : {&rig.sensor.density, &rig.sensor.random_walk, &rig.sensor.drift_rate})
     *noise *= config.noise;

@@ -19,6 +19,13 @@ struct TrialCell {
   std::string urdf;  ///< path, of the rig
 };
 
+/// With a probability of `share` one fault that an operator meets: a sensor that is frozen, jumps (0.1 to 1 times the
+/// zona's strength) or drifts (0.02 to 0.2 times it a second), set-points that are lost for 3 s or are 0.05 to 0.3 s
+/// late, or a needle that drifts (0.1 to 1 um/s). It begins 0.5 to 8 s after the start.
+InjectionRig::Disturbance randomFault(const InjectionCase& of, double share);
+/// As a word; empty: none.
+std::string toText(InjectionRig::Disturbance::Kind kind);
+
 /// A random cell that somebody else injects: a hand, or a program that learns to. Its motion goes the way of an
 /// operator's, through the controller with its guards, and what it hears comes from the virtual sensor, so that a
 /// policy that works here has met the noise, the delays and the refusals of a session, at a hundredth of the time.
@@ -33,6 +40,7 @@ class HandTrial {
     int seed = 0;
     double force_delay = 0;  ///< s, of the sensor's reading
     double noise = 1;        ///< of the sensor's noise and drift, over that of ForceSensorConfig
+    double faults = 0;       ///< probability of a fault of the rig, see randomFault()
   };
   /// Names and units of an observation's numbers.
   static constexpr std::array<const char*, 14> kObservation = {
@@ -55,11 +63,15 @@ class HandTrial {
   std::string state() const { return toText(rig_->controller().injection()); }
   const std::string& notice() const { return notice_; }  ///< why the last command was refused; empty: it was not
   double trueForce() const { return true_force_; }       ///< N, along the pipette
+  int seed() const { return of_.seed; }
+  Eigen::Vector3d trueTip() const { return rig_->tip(); }  ///< m
+  const InjectionRig::Disturbance& fault() const { return fault_; }
   const TrainingTask& task() const { return task_; }
   TrainingScore score() const { return training_.score(task_); }
 
  private:
   InjectionCase of_;
+  InjectionRig::Disturbance fault_;
   InjectionControllerConfig settings_;
   TrainingTask task_;
   std::unique_ptr<ScaledCell> cell_;

@@ -35,8 +35,28 @@ InjectionRig::InjectionRig(const Config& config, const ManipulatorGeometry& geom
 
 bool InjectionRig::isIn(Disturbance::Kind kind) const {
   constexpr double kStands = 3;  // s
-  const double since = time_ - began_ - disturbance_.begin;
+  const double since = sinceDisturbance();
   return disturbance_.kind == kind && since >= 0 && (kind != Disturbance::Kind::kRigStands || since < kStands);
+}
+
+Eigen::Vector3d InjectionRig::tip() const {
+  Eigen::Vector3d tip = geometry_.tip(device_.trueJoints());
+  if (isIn(Disturbance::Kind::kNeedleDrift)) tip.z() += disturbance_.size * sinceDisturbance();
+  return tip;
+}
+
+void InjectionRig::read(const Eigen::Vector3d& force) {
+  if (isIn(Disturbance::Kind::kSensorFrozen)) return;
+  reading_ = sensor_.sample({force.z(), force.x()}, kStep);
+  if (isIn(Disturbance::Kind::kSensorOffset)) reading_.x() += disturbance_.size;
+  if (isIn(Disturbance::Kind::kSensorDrift)) reading_.x() += disturbance_.size * sinceDisturbance();
+}
+
+std::optional<Eigen::Vector3d> InjectionRig::arriving(const std::optional<Eigen::Vector3d>& setpoint) {
+  const double delay = isIn(Disturbance::Kind::kCommandsLate) ? disturbance_.size : 0;
+  setpoints_.push_back(setpoint);
+  while (setpoints_.size() > static_cast<std::size_t>(std::lround(delay / kStep)) + 1) setpoints_.pop_front();
+  return isIn(Disturbance::Kind::kRigStands) ? std::nullopt : setpoints_.front();
 }
 
 void InjectionRig::run(double limit) {
@@ -58,7 +78,7 @@ void InjectionRig::step(const std::optional<Eigen::Vector3d>& target) {
   const Eigen::Vector3d tip = this->tip();
   const Eigen::Vector3d force = cell_->step(tip, time_);
   monitor(force, tip);
-  reading_ = sensor_.sample({force.z(), force.x()}, kStep);
+  read(force);
   InjectionController::Input input;
   input.target = target;
   if (const auto pose = manipulator_.tipPose()) input.needle = measured_ = pose->translation();
@@ -70,9 +90,9 @@ void InjectionRig::step(const std::optional<Eigen::Vector3d>& target) {
   if (isIn(Disturbance::Kind::kNeedleLost)) input.needle.reset();
   const InjectionState before = controller_.injection();
   const int punctures_before = controller_.result().punctures;
-  const auto setpoint = controller_.step(input, kStep);
+  const auto setpoint = arriving(controller_.step(input, kStep));
   receive(before, punctures_before);
-  if (setpoint && !isIn(Disturbance::Kind::kRigStands)) {
+  if (setpoint) {
     Eigen::Isometry3d pose = geometry_.tip_at_zero;
     pose.translation() = *setpoint;
     manipulator_.servoPosition(pose);

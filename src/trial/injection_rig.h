@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <deque>
 #include <optional>
 
 #include "hardware/injector/injector_model.h"
@@ -19,9 +20,21 @@ class InjectionRig {
  public:
   /// What goes wrong, `begin` (s) after the start.
   struct Disturbance {
-    enum class Kind { kNone, kForceLost, kNeedleLost, kRigStands, kInjectorDead };
+    enum class Kind {
+      kNone,
+      kForceLost,
+      kNeedleLost,
+      kRigStands,  ///< set-points are lost for 3 s
+      kInjectorDead,
+      kSensorFrozen,
+      kSensorOffset,  ///< size: N, axial
+      kSensorDrift,   ///< size: N/s, axial
+      kCommandsLate,  ///< size: s
+      kNeedleDrift    ///< size: m/s along z, of the true tip: the device does not measure it
+    };
     Kind kind = Kind::kNone;
     double begin = 0;
+    double size = 0;
   };
   struct Config {
     Disturbance disturbance;
@@ -64,13 +77,17 @@ class InjectionRig {
   };
   const Truth& truth() const { return truth_; }
   const InjectionController& controller() const { return controller_; }
-  Eigen::Vector3d tip() const { return geometry_.tip(device_.trueJoints()); }
+  Eigen::Vector3d tip() const;  ///< m, where it truly is
   /// Rests: 0.2 s later (a second after a rig that stood still goes again) the tip stays where it
   /// is for half a second, and the injector is off.
   bool holds();
 
  private:
+  double sinceDisturbance() const { return time_ - began_ - disturbance_.begin; }  ///< s
   bool isIn(Disturbance::Kind kind) const;
+  void read(const Eigen::Vector3d& force);
+  /// The set-point that reaches the micromanipulator now.
+  std::optional<Eigen::Vector3d> arriving(const std::optional<Eigen::Vector3d>& setpoint);
   void monitor(const Eigen::Vector3d& force, const Eigen::Vector3d& tip);
   void receive(InjectionState before, int punctures_before);
 
@@ -84,6 +101,7 @@ class InjectionRig {
   Eigen::Vector2d reading_ = Eigen::Vector2d::Zero();   ///< N
   Eigen::Vector3d measured_ = Eigen::Vector3d::Zero();  ///< m
   Disturbance disturbance_;
+  std::deque<std::optional<Eigen::Vector3d>> setpoints_;  ///< m, on their way, the newest last
   std::optional<ExpectedPuncture> expected_;
   double began_ = 0;  ///< s
   double time_ = 0;   ///< s

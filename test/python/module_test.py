@@ -241,6 +241,19 @@ class AnImageTest(unittest.TestCase):
                 self.assertAlmostEqual(measured.centre[0], 320.3, delta=0.5)
                 self.assertAlmostEqual(measured.centre[1], 239.6, delta=0.5)
 
+    def test_that_is_rendered_has_what_its_truth_says(self):
+        image, truth = cm.render_specimen(7)
+        self.assertEqual((image.shape, image.dtype), ((1040, 1392), numpy.uint8))
+        numpy.testing.assert_array_equal(image, cm.render_specimen(7)[0])
+        numpy.testing.assert_allclose(cm.find_tip(image)['place'], truth['tip'], atol=1)
+        measured = cm.measure_cell(image, truth['pixel_size'])
+        numpy.testing.assert_allclose(measured.centre, truth['centre'], atol=1)
+        self.assertAlmostEqual(measured.diameter[0] / truth['pixel_size'], truth['diameter'], delta=1)
+        noisy, same = cm.render_specimen(7, {'sensor': {'gain': 2, 'bits': 16}})
+        self.assertEqual((noisy.dtype, same), (numpy.uint16, truth))
+        with self.assertRaisesRegex(cm.ConfigError, 'unknown key'):
+            cm.render_specimen(7, {'sensors': {}})
+
     def test_must_be_one(self):
         for wrong, part in ((numpy.zeros((4, 4)), 'float64: must be uint8 or uint16'),
                             (numpy.zeros(4, numpy.uint8), 'shape'), ('x', 'image')):
@@ -325,6 +338,31 @@ class ATaskTest(unittest.TestCase):
             speed = numpy.clip(-20e-6 * (wished - force) / wished, -20e-6, 20e-6)
             observation, _, done, late, _ = env.step([0, 0, speed])
         self.assertTrue(done)
+
+    def test_has_faults_only_where_they_are_asked_for_and_the_same_ones_each_time(self):
+        told = {}
+        for seed in range(12):
+            _, _, info = self.run_through(gym.Inject(steps=10, faults=0.5), seed)
+            told[seed] = info['fault']
+            if seed < 2:
+                self.assertNotIn('fault', self.run_through(gym.Inject(steps=10), seed)[2])
+                self.assertEqual(self.run_through(gym.Inject(steps=10, faults=0.5), seed)[2], info)
+        faults = [fault for fault in told.values() if fault]
+        self.assertTrue(0 < len(faults) < 12, told)
+        self.assertTrue(all(set(fault) == {'kind', 'begin_s', 'size'} for fault in faults))
+        with self.assertRaisesRegex(cm.ConfigError, 'faults: must be from 0 to 1'):
+            gym.Inject(faults=2).reset(seed=1)
+
+    def test_tells_the_fault_at_the_end_of_a_press_too(self):
+        env = gym.IndentToForce(steps=1000, faults=1)
+        env.reset(seed=3)
+        over = False
+        while not over:
+            _, _, done, late, info = env.step([0, 0, 0])
+            over = done or late
+            self.assertEqual('fault' in info, over)
+        self.assertIn(info['fault']['kind'], ('sensor_frozen', 'sensor_offset', 'sensor_drift', 'commands_lost', 'commands_late',
+                                              'needle_drift'))
 
     def test_to_press_cannot_be_done_by_resting(self):
         for seed in range(20):

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 
 #include "base/errors.h"
 #include "cell/family/family_cell.h"
@@ -88,6 +89,86 @@ TEST(HandTrial, TheForceComesLateByTheDelay) {
   for (std::size_t i = 50; i < forces.size(); ++i) ASSERT_EQ(delayed[i], forces[i - 50]) << i;
 }
 
+/// Trials of which each has a fault, found by its kind.
+HandTrial faulty(const std::string& kind) {
+  for (int seed = 1; seed < 200; ++seed) {
+    HandTrial::Config config;
+    config.seed = seed;
+    config.noise = 0;
+    config.faults = 1;
+    HandTrial of(cell(), config);
+    if (toText(of.fault().kind) == kind) return of;
+  }
+  throw std::invalid_argument(kind);
+}
+
+/// The same cell, where nothing fails.
+HandTrial healthy(const HandTrial& of) { return trial(of.seed(), 0, 0); }
+
+void stepBoth(HandTrial& of, HandTrial& other, double until, const Eigen::Vector3d& velocity = kDown) {
+  while (valueOf(of, "time_s") < until) {
+    for (HandTrial* each : {&of, &other}) each->step(velocity, false, 1);
+  }
+}
+
+TEST(HandTrial, AShareOfTheTrialsHasAFaultOfEachKind) {
+  std::map<std::string, int> found;
+  for (int seed = 1; seed <= 600; ++seed) {
+    const InjectionCase of = randomInjectionCase(seed);
+    const auto fault = randomFault(of, 0.5);
+    ++found[toText(fault.kind)];
+    EXPECT_EQ(toText(randomFault(of, 0).kind), "");
+    if (fault.kind != InjectionRig::Disturbance::Kind::kNone) {
+      EXPECT_EQ(randomFault(of, 1).kind, fault.kind);
+      EXPECT_TRUE(fault.begin >= 0.5 && fault.begin <= 8);
+    }
+  }
+  EXPECT_NEAR(found[""], 300, 50);
+  for (const char* kind :
+       {"sensor_frozen", "sensor_offset", "sensor_drift", "commands_lost", "commands_late", "needle_drift"})
+    EXPECT_NEAR(found[kind], 50, 25) << kind;
+}
+
+TEST(HandTrial, NothingFailsBeforeItsTime) {
+  HandTrial of = faulty("sensor_offset"), other = healthy(of);
+  stepBoth(of, other, of.fault().begin - 2e-3);
+  EXPECT_EQ(of.observation(), other.observation());
+}
+
+TEST(HandTrial, AFaultySensorReadsWhatIsNotThere) {
+  for (const auto& [kind, after] : {std::pair("sensor_offset", 0.01), std::pair("sensor_drift", 0.5)}) {
+    HandTrial of = faulty(kind), other = healthy(of);
+    stepBoth(of, other, of.fault().begin + after, kUp);
+    const double off = valueOf(of, "force_axial_N") - valueOf(other, "force_axial_N");
+    EXPECT_NEAR(off / of.fault().size, kind == std::string("sensor_drift") ? after : 1, 0.1) << kind;
+  }
+  HandTrial frozen = faulty("sensor_frozen"), other = healthy(frozen);
+  stepBoth(frozen, other, frozen.fault().begin + 3);
+  const double reading = valueOf(frozen, "force_axial_N");
+  frozen.step(kDown, false, 100);
+  EXPECT_EQ(valueOf(frozen, "force_axial_N"), reading);
+}
+
+TEST(HandTrial, FaultyCommandsMoveTheNeedleLater) {
+  const Eigen::Vector3d slow = 0.1 * kUp;  // a faster one is held, as it lags too far
+  std::map<std::string, double> behind;
+  for (const char* kind : {"commands_lost", "commands_late"}) {
+    HandTrial of = faulty(kind), other = healthy(of);
+    stepBoth(of, other, of.fault().begin + 0.5, slow);
+    behind[kind] = (valueOf(other, "z_m") - valueOf(of, "z_m")) / slow.z() - of.fault().size;
+  }
+  EXPECT_NEAR(behind["commands_lost"], 0.5, 0.05);
+  EXPECT_GT(behind["commands_late"], -0.01);
+  EXPECT_LT(behind["commands_late"], 0.2);
+}
+
+TEST(HandTrial, ADriftingNeedleIsWhereTheDeviceDoesNotTell) {
+  HandTrial of = faulty("needle_drift"), other = healthy(of);
+  stepBoth(of, other, of.fault().begin + 1, kUp);
+  EXPECT_NEAR(valueOf(of, "z_m"), valueOf(other, "z_m"), 1e-7);
+  EXPECT_NEAR(of.trueTip().z() - other.trueTip().z(), of.fault().size, 1e-7);
+}
+
 TEST(HandTrial, TheGuardHoldsTheNeedle) {
   HandTrial of = trial(5);
   for (int i = 0; i < 3000 && !of.over(); ++i) of.step(kDown, false, 10);
@@ -101,6 +182,9 @@ TEST(HandTrial, RefusesWhatIsNoMotion) {
   EXPECT_THROW(of.step(kDown, false, 0), ConfigError);
   EXPECT_THROW(trial(1, -1), ConfigError);
   EXPECT_THROW(trial(1, 0, NAN), ConfigError);
+  HandTrial::Config config;
+  config.faults = 1.1;
+  EXPECT_THROW(HandTrial(cell(), config), ConfigError);
 }
 
 }  // namespace

@@ -31,20 +31,32 @@ const TrialCell& trialCell() {
   return cell;
 }
 
+py::object faultOf(const HandTrial& trial) {
+  const InjectionRig::Disturbance& fault = trial.fault();
+  if (fault.kind == InjectionRig::Disturbance::Kind::kNone) return py::none();
+  py::dict result;
+  result["kind"] = toText(fault.kind);
+  result["begin_s"] = fault.begin;
+  result["size"] = fault.size;
+  return std::move(result);
+}
+
 PyArray observationOf(const HandTrial& trial) { return toArray(Eigen::VectorXd(trial.observation())); }
 
 }  // namespace
 
 void bindTrial(py::module_& module) {
   py::class_<HandTrial>(module, "Trial")
-      .def(py::init([](int seed, double force_delay, double noise) {
+      .def(py::init([](int seed, double force_delay, double noise, double faults) {
              HandTrial::Config config;
              config.seed = seed;
              config.force_delay = force_delay;
              config.noise = noise;
+             config.faults = faults;
              return std::make_unique<HandTrial>(trialCell(), config);
            }),
-           py::arg("seed"), py::kw_only(), py::arg("force_delay") = 0.0, py::arg("noise") = 1.0)
+           py::arg("seed"), py::kw_only(), py::arg("force_delay") = 0.0, py::arg("noise") = 1.0,
+           py::arg("faults") = 0.0)
       .def(
           "step",
           [](HandTrial& trial, double vx, double vy, double vz, bool inject, int steps) {
@@ -57,6 +69,7 @@ void bindTrial(py::module_& module) {
       .def_property_readonly("state", &HandTrial::state)
       .def_property_readonly("notice", &HandTrial::notice)
       .def_property_readonly("true_force", &HandTrial::trueForce)
+      .def_property_readonly("fault", &faultOf)
       .def("score", [](const HandTrial& trial) {
         const TrainingScore score = trial.score();
         py::dict measures, result;

@@ -1,8 +1,9 @@
-// measure_cell(), find_tip() and Calibration.
+// measure_cell(), find_tip(), render_specimen() and Calibration.
 
 #include <pybind11/stl.h>
 
 #include <cstdint>
+#include <cstring>
 #include <mutex>
 #include <opencv2/core.hpp>
 
@@ -13,6 +14,8 @@
 #include "vision/calibration/calibration_file.h"
 #include "vision/measurement/cell_measurement.h"
 #include "vision/measurement/vision_config.h"
+#include "vision/microscope/microscope.h"
+#include "vision/microscope/scene_draw.h"
 
 namespace microinjection {
 
@@ -108,6 +111,37 @@ py::dict cellOf(const SpecimenView& view, double pixel_size) {
   return result;
 }
 
+py::array arrayOf(const cv::Mat& image) {
+  const bool is_short = image.depth() == CV_16U;
+  py::array result(is_short ? py::dtype::of<std::uint16_t>() : py::dtype::of<std::uint8_t>(), {image.rows, image.cols});
+  std::memcpy(result.mutable_data(), image.data, image.total() * image.elemSize());
+  return result;
+}
+
+py::object pixelOf(const Eigen::Vector2d& place) { return py::make_tuple(place.x(), place.y()); }
+
+/// A random cell between two pipettes, as the virtual microscope sees them, with what is to be found.
+py::tuple renderSpecimen(std::uint64_t seed, const py::dict& keys) {
+  ConfigReader reader(toYaml(keys), "microscope");
+  const MicroscopeConfig config = MicroscopeConfig::read(reader);
+  reader.finish();
+  Microscope microscope(config);
+  SceneDrawConfig draw;
+  draw.holding = draw.injection = 1;
+  const DrawnScene drawn = drawScene(draw, config.camera, seed);
+  cv::Mat image;
+  {
+    const py::gil_scoped_release others;
+    image = microscope.render(drawn.scene, 0, seed);
+  }
+  py::dict truth;
+  truth["pixel_size"] = config.camera.pixel_size;
+  truth["tip"] = pixelOf(drawn.truth.injection->end);
+  truth["centre"] = pixelOf(drawn.truth.cell->centre);
+  truth["diameter"] = drawn.truth.cell->diameter;
+  return py::make_tuple(arrayOf(image), truth);
+}
+
 }  // namespace
 
 void bindVision(py::module_& module) {
@@ -126,6 +160,8 @@ void bindVision(py::module_& module) {
             return result;
           },
           py::arg("image"), py::arg("pixel_size"));
+
+  module.def("render_specimen", &renderSpecimen, py::arg("seed"), py::arg("config") = py::dict());
 
   py::class_<CameraCalibration>(module, "Calibration")
       .def_static(

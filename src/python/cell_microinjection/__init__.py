@@ -21,7 +21,7 @@ from cell_microinjection import _core
 from cell_microinjection._core import Calibration, ConfigError, Vision, WriteError, indent, package_folder
 
 __all__ = ['Calibration', 'Cell', 'ConfigError', 'Estimate', 'Identification', 'Measurement', 'Scene', 'Vision', 'WriteError',
-           'find_tip', 'identify', 'indent', 'load_record', 'measure_cell', 'package_folder']
+           'find_tip', 'identify', 'indent', 'load_record', 'measure_cell', 'package_folder', 'render_specimen']
 __version__ = _core.__version__
 
 
@@ -188,6 +188,17 @@ def find_tip(image, direction=None, config=None):
     if direction is not None:
         config['injection_pipette'] = {**config.get('injection_pipette', {}), 'direction': float(direction)}
     return Vision(config).see(image, 1e-6)['injection_pipette']
+
+
+def render_specimen(seed, config=None):
+    """Renders a random cell between a holding and an injection pipette, which may press it (doc/design/microscope.md).
+
+    seed: from 0; the same one gives the same image. config: keys of config/microscope.yaml, of the sections camera,
+    objective, contrast, illumination and sensor.
+    @returns (image, truth): (height, width), uint8 or uint16; and a dict: pixel_size, m; tip, (x, y), px, which may lie
+        outside of the image; centre, (x, y), and diameter of the cell without its dimple, px
+    """
+    return _core.render_specimen(seed, config or {})
 
 
 def load_record(path):

@@ -57,11 +57,15 @@ class _Trial:
     render_mode = None
     observation_space = Box(-numpy.inf, numpy.inf, (len(OBSERVATION),))
 
-    def __init__(self, *, steps=1, force_delay=0.0, noise=1.0):
-        """steps: ms that an action lasts. force_delay: s, of the sensor. noise: of the sensor, over its usual one."""
+    def __init__(self, *, steps=1, force_delay=0.0, noise=1.0, faults=0.0):
+        """steps: ms that an action lasts. force_delay: s, of the sensor. noise: of the sensor, over its usual one.
+        faults: the share of cells at which something of the rig fails, once, drawn with the cell. `info` of the last step
+        then has `fault`, None or a dict: kind, begin_s, and size: N of sensor_offset, N/s of sensor_drift, s of
+        commands_late, m/s of needle_drift, 0 of sensor_frozen and commands_lost."""
         if int(steps) != steps or steps < 1:
             raise _core.ConfigError(f'steps = {steps}: must be a whole number from 1 on')
-        self._steps, self._force_delay, self._noise = int(steps), float(force_delay), float(noise)
+        self._steps, self._faults = int(steps), float(faults)
+        self._settings = {'force_delay': float(force_delay), 'noise': float(noise), 'faults': self._faults}
         self._trial = None
         self._random = numpy.random.default_rng()
 
@@ -71,7 +75,7 @@ class _Trial:
         if seed is not None:
             self._random = numpy.random.default_rng(seed)
         cell = int((options or {}).get('cell', self._random.integers(1, 2**31 - 1)))
-        self._trial = _core.Trial(cell, force_delay=self._force_delay, noise=self._noise)
+        self._trial = _core.Trial(cell, **self._settings)
         observation = self._trial.observation
         self._begin(observation)
         return observation, {'cell': cell}
@@ -87,6 +91,10 @@ class _Trial:
 
     def _begin(self, observation):
         """Of a task: what it remembers."""
+
+    def _last(self, info):
+        """@returns the info of a last step, with the fault where faults were asked for"""
+        return {**info, 'fault': self._trial.fault} if self._faults else info
 
 
 class Inject(_Trial):
@@ -107,7 +115,7 @@ class Inject(_Trial):
             return observation, 0.0, False, False, {}
         late = observation[0] > 119.9
         score = self._trial.score()
-        return observation, score['score'] / 100, not late, late, score
+        return observation, score['score'] / 100, not late, late, self._last(score)
 
 
 class IndentToForce(_Trial):
@@ -143,7 +151,8 @@ class IndentToForce(_Trial):
         self._within = self._within + seconds if good else 0.0
         done = self._within >= self.HELD - 1e-9
         late = not done and (self._trial.over or observation[0] > self.LONGEST)
-        return numpy.append(observation, self._wished), 0.0 if good else -seconds, done, late, {}
+        info = self._last({}) if done or late else {}
+        return numpy.append(observation, self._wished), 0.0 if good else -seconds, done, late, info
 
 
 class ApproachByImage:

@@ -58,7 +58,7 @@ build_bench() {
       build_targets bench_latency
       install_component emulated_haptic
       ;;
-    peers) build_targets bench_peers ;;
+    field | peers) build_targets bench_peers ;;
     python) build_targets bench_force_calls ;;
   esac
   use_private_master
