@@ -85,6 +85,26 @@ class ACellTest(unittest.TestCase):
         forces = self.CELL.force(self.CELL.tips(depths))
         numpy.testing.assert_allclose(forces[:, 2], solved['force'][:, 2], rtol=0.03)
 
+    def test_a_tongue_gives_back_the_modulus(self):
+        scene = cm.Scene.load('mouse_oocyte_held')
+        drawn = cm.aspirate(scene, [-300, -900, -1500, -2100], tolerance=0.02)
+        self.assertTrue(drawn['converged'].all())
+        self.assertTrue((numpy.diff(drawn['tongue_length']) > 0).all())
+        outline = drawn['outline'][-1]
+        self.assertEqual(outline.shape[1], 2)
+        self.assertAlmostEqual(outline[0, 0], 0, delta=1e-12)  # from the pole in the mouth
+        self.assertLess(outline[0, 1], outline[-1, 1])
+        found = cm.identify_tongue(drawn['pressure'], drawn['tongue_length'] + 2e-6, scene)
+        modulus = found['young_modulus']
+        self.assertAlmostEqual(modulus.value / 17.9e3, 1, delta=0.01)
+        self.assertLess(modulus.low, 17.9e3)
+        self.assertLess(17.9e3, modulus.high)
+        self.assertAlmostEqual(found['offset'].value, 2e-6, delta=0.1e-6)
+        with self.assertRaisesRegex(cm.ConfigError, 'holding_pipette/mouth: is missing'):
+            cm.aspirate(SCENE, [-300])
+        with self.assertRaisesRegex(cm.ConfigError, 'at most 0'):
+            cm.identify_tongue([1, 2, 3, 4], [1, 2, 3, 4], scene)
+
     def test_stiffness_is_the_derivative_of_the_force(self):
         tip = self.CELL.tips([5e-6], (3e-6, 0))[0]
         stiffness = self.CELL.stiffness(tip)

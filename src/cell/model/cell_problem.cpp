@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -75,6 +76,22 @@ std::vector<int> nodesWithin(const LayeredBody<Dim>& body, const Eigen::Vector2d
   }
   return nodes;
 }
+
+/// (r, z) of a section's deformed outer surface, m, from the lower pole to the upper one.
+Eigen::Matrix2Xd outlineOf(const LayeredBody<2>& body, const Eigen::VectorXd& state) {
+  const QuadraticMesh<2>& mesh = body.mesh();
+  const auto angle = [&](int node) { return std::atan2(mesh.nodes[node][0], -mesh.nodes[node][1]); };
+  const auto before = [&](int a, int b) { return angle(a) < angle(b); };
+  std::set<int, decltype(before)> nodes(before);
+  for (const auto& facet : mesh.facets) {
+    if (facet.layer == 0) nodes.insert(facet.nodes.begin(), facet.nodes.end());
+  }
+  Eigen::Matrix2Xd outline(2, static_cast<Eigen::Index>(nodes.size()));
+  Eigen::Index column = 0;
+  for (const int node : nodes) outline.col(column++) = mesh.nodes[node] + state.segment<2>(2 * node);
+  return outline;
+}
+Eigen::Matrix2Xd outlineOf(const LayeredBody<3>&, const Eigen::VectorXd&) { return {}; }
 
 /// Throws std::invalid_argument when the mesh is not the half y >= 0, whose forces are doubled.
 template <int Dim>
@@ -236,6 +253,7 @@ HeldCell CellProblem<Dim>::held() const {
   held.seal_radius = suction_->sealRadius();
   held.clamping_force = lip_->ring(state).force;
   held.imbalance = anchor_->residualForce(state)[Dim - 1];
+  held.outline = outlineOf(*body_, state);
   return held;
 }
 

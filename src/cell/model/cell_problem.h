@@ -31,6 +31,7 @@ struct HeldCell {
   double tongue_volume = 0;   ///< m^3, of the cell behind that plane, in the bore
   double seal_radius = 0;     ///< m, of the circle on which the surface is pressed against the lip, in the mean
   double clamping_force = 0;  ///< N, of the lip on the cell, along the axis; suction and needle balance it
+  Eigen::Matrix2Xd outline;   ///< m, (r, z) of the deformed surface, from the pole in the mouth to the other one
   double imbalance = 0;       ///< N, along the axis, that the solution has not balanced
 };
 

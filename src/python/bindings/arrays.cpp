@@ -72,9 +72,9 @@ PyArray toArray(const Eigen::Ref<const Eigen::VectorXd>& values) {
   return array;
 }
 
-PyArray rowsOf(const Eigen::Ref<const Eigen::Matrix3Xd>& columns) {
-  PyArray array({columns.cols(), Eigen::Index(3)});
-  Eigen::Map<Eigen::Matrix3Xd>(array.mutable_data(), 3, columns.cols()) = columns;
+PyArray rowsOf(const Eigen::Ref<const Eigen::MatrixXd>& columns) {
+  PyArray array({columns.cols(), columns.rows()});
+  Eigen::Map<Eigen::MatrixXd>(array.mutable_data(), columns.rows(), columns.cols()) = columns;
   return array;
 }
 

@@ -30,6 +30,6 @@ Eigen::Vector3d directionOf(const char* name, const pybind11::object& given);
 
 PyArray toArray(const Eigen::Ref<const Eigen::VectorXd>& values);
 /// Rows of the array are columns of the matrix.
-PyArray rowsOf(const Eigen::Ref<const Eigen::Matrix3Xd>& columns);
+PyArray rowsOf(const Eigen::Ref<const Eigen::MatrixXd>& columns);
 
 }  // namespace microinjection

@@ -8,6 +8,7 @@
 #include "base/errors.h"
 #include "cell/model/contact_frame.h"
 #include "cell/model/converged_force.h"
+#include "cell/model/converged_tongue.h"
 #include "python/bindings/arrays.h"
 #include "python/bindings/module.h"
 #include "python/bindings/scene_value.h"
@@ -162,6 +163,48 @@ py::dict indentScene(const SceneValue& scene, const py::object& depths, const py
   return result;
 }
 
+py::dict aspirateScene(const SceneValue& scene, const py::object& pressures, double tolerance) {
+  std::vector<double> wanted;
+  if (!pressures.is_none()) {
+    const Eigen::VectorXd given = vectorOf("pressures", pressures);
+    wanted.assign(given.data(), given.data() + given.size());
+  } else if (scene.scene().holding_pipette.mouth) {
+    wanted = {scene.scene().holding_pipette.mouth->pressure};
+  }
+  if (!(tolerance > 0)) throw ConfigError("tolerance: must be > 0");
+  ConvergedTongueConfig config;
+  config.tolerance = tolerance;
+  std::vector<TonguePoint> points;
+  {
+    const py::gil_scoped_release others;
+    points = convergedTongues(scene.scene(), wanted, config, [](double, std::size_t) { checkSignals(); });
+  }
+  const auto count = static_cast<Eigen::Index>(points.size());
+  Eigen::MatrixXd values = Eigen::MatrixXd::Constant(count, 6, std::numeric_limits<double>::quiet_NaN());
+  py::array_t<bool> converged(count);
+  py::list reasons, outlines;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const TonguePoint& point = points[static_cast<std::size_t>(i)];
+    const HeldCell& held = point.held;
+    values(i, 0) = held.pressure;
+    if (point.converged)
+      values.row(i).tail(5) << held.tongue_length, held.tongue_volume, held.seal_radius, held.clamping_force,
+          point.error_estimate;
+    converged.mutable_at(i) = point.converged;
+    reasons.append(point.reason);
+    outlines.append(point.converged ? py::object(rowsOf(held.outline)) : py::none());
+  }
+  py::dict result;
+  int column = 0;
+  for (const char* name :
+       {"pressure", "tongue_length", "tongue_volume", "seal_radius", "clamping_force", "error_estimate"})
+    result[name] = toArray(Eigen::VectorXd(values.col(column++)));
+  result["converged"] = converged;
+  result["reason"] = reasons;
+  result["outline"] = outlines;
+  return result;
+}
+
 }  // namespace
 
 void bindCell(py::module_& module) {
@@ -213,6 +256,8 @@ void bindCell(py::module_& module) {
   module.def("indent", &indentScene, py::arg("scene"), py::arg("depths"), py::kw_only(),
              py::arg("lateral") = py::none(), py::arg("speed") = py::none(), py::arg("hold") = 0.0,
              py::arg("withdrawal") = py::none(), py::arg("tolerance") = 0.005, py::arg("time") = 600.0);
+  module.def("aspirate", &aspirateScene, py::arg("scene"), py::arg("pressures") = py::none(), py::kw_only(),
+             py::arg("tolerance") = 0.005);
 }
 
 }  // namespace microinjection

@@ -8,6 +8,7 @@
 #include "cell/identification/identification.h"
 #include "cell/identification/rival_cells.h"
 #include "cell/identification/table_law.h"
+#include "cell/identification/tongue_identification.h"
 #include "python/bindings/arrays.h"
 #include "python/bindings/module.h"
 #include "python/bindings/scene_value.h"
@@ -101,12 +102,31 @@ py::dict identifyRecord(const std::string& path, const std::optional<SceneValue>
   return result;
 }
 
+py::dict identifyTongues(const py::object& pressures, const py::object& lengths, const SceneValue& scene) {
+  const Eigen::VectorXd pressure = vectorOf("pressure", pressures), length = vectorOf("length", lengths);
+  if (pressure.size() != length.size())
+    throw ConfigError("length: must be " + std::to_string(pressure.size()) + " numbers, as pressure is");
+  TongueRecord record;
+  record.pressure.assign(pressure.data(), pressure.data() + pressure.size());
+  record.length.assign(length.data(), length.data() + length.size());
+  for (const double each : record.pressure) {
+    if (!(each <= 0)) throw ConfigError("pressure: must be at most 0 Pa: suction");
+  }
+  Identification found;
+  {
+    const py::gil_scoped_release others;
+    found = identifyTongue(record, scene.scene(), TongueShape(scene.scene()));
+  }
+  return toDict(found);
+}
+
 }  // namespace
 
 void bindIdentify(py::module_& module) {
   module.def("identify_record", &identifyRecord, py::arg("path"), py::arg("scene"), py::arg("model"), py::arg("free"),
              py::arg("tip_radius"), py::arg("drift"), py::arg("prony_terms"), py::arg("intervals"), py::arg("columns"),
              py::arg("spring_constant"), py::arg("segment"), py::arg("whole"), py::arg("families"));
+  module.def("identify_tongue", &identifyTongues, py::arg("pressure"), py::arg("length"), py::arg("scene"));
 }
 
 }  // namespace microinjection

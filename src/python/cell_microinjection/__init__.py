@@ -18,10 +18,10 @@ import tempfile
 import numpy
 
 from cell_microinjection import _core
-from cell_microinjection._core import Calibration, ConfigError, Vision, WriteError, indent, package_folder
+from cell_microinjection._core import Calibration, ConfigError, Vision, WriteError, aspirate, indent, package_folder
 
 __all__ = ['Calibration', 'Cell', 'ConfigError', 'Estimate', 'Identification', 'Measurement', 'Scene', 'Vision', 'WriteError',
-           'find_tip', 'identify', 'indent', 'load_record', 'measure_cell', 'package_folder', 'render_specimen']
+           'aspirate', 'find_tip', 'identify', 'identify_tongue', 'indent', 'load_record', 'measure_cell', 'package_folder', 'render_specimen']
 __version__ = _core.__version__
 
 
@@ -140,6 +140,23 @@ def identify(record, scene=None, model=None, *, free=(), tip_radius=None, drift=
             found = run(path)
     found['estimates'] = {name: Estimate(**each) for name, each in found['estimates'].items()}
     return Identification(**found)
+
+
+def identify_tongue(pressure, length, scene):
+    """Finds the modulus of a cell that suction holds, from images of its tongue (doc/guide/hold.md).
+
+    pressure: (n,), Pa, gauge, at most 0, in the bore. length: (n,), m, of the tongue from any fixed place on the pipette's
+    axis, growing into the bore; n is 4 or more. scene: a Scene with holding_pipette/mouth, a path or a name, whose sizes
+    hold and whose modulus is searched.
+    @returns an Identification: its estimates are young_modulus and offset, of the place from the lip; `noise` and `misfit`
+        are in m, `position` has the lengths, `force` is empty
+    @raises ConfigError where the tongue does not grow with the suction, or the record is too short
+    """
+    if not isinstance(scene, _core.Scene):
+        scene = Scene.load(scene)
+    found = _core.identify_tongue(pressure, length, scene)
+    found['estimates'] = {name: Estimate(**each) for name, each in found['estimates'].items()}
+    return Identification(**found, notes=[], position=numpy.asarray(length, dtype=float), force=numpy.empty(0))
 
 
 def _write_table(path, record):

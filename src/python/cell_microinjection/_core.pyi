@@ -62,6 +62,14 @@ def indent(scene: Scene, depths: ArrayLike, *, lateral: Optional[ArrayLike] = ..
            time: float = ...) -> dict[str, Any]: ...
 
 
+# Arrays (n,) of pressure, tongue_length, tongue_volume, seal_radius, clamping_force, error_estimate, converged; lists of
+# reason and outline, (m, 2): r and z of the deformed surface, m, or None. Pressures: Pa, gauge; default: the scene's.
+def aspirate(scene: Scene, pressures: Optional[ArrayLike] = ..., *, tolerance: float = ...) -> dict[str, Any]: ...
+
+
+def identify_tongue(pressure: ArrayLike, length: ArrayLike, scene: Scene) -> dict[str, Any]: ...
+
+
 def identify_record(path: str, scene: Optional[Scene], model: str, free: Sequence[str], tip_radius: Optional[float],
                     drift: str, prony_terms: int, intervals: bool, columns: dict[str, str],
                     spring_constant: Optional[float], segment: str, whole: bool,
