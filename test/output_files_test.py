@@ -17,6 +17,7 @@ CALLS = {
     'plot_residuals.py': ('{0}', '--out', '{1}'),
     'plot_training.py': ('{0}', '{1}'),
     'plot_force_depth.py': ('{0}', '{1}'),
+    'plot_tongue.py': ('--scene', '{0}', '--out', '{1}'),
 }
 
 
@@ -45,7 +46,7 @@ class OutputFiles(unittest.TestCase):
     def test_all_tools_that_write_pictures_or_tables_ask(self):
         for path in TOOLS.glob('*.py'):
             text = path.read_text()
-            if 'add_argument(' in text and ('savefig(png' in text or 'savetxt(out' in text or 'out.write_text(' in text):
+            if 'add_argument(' in text and ('savefig(png' in text or 'savefig(path' in text or 'savetxt(out' in text or 'out.write_text(' in text):
                 self.assertIn(path.name, CALLS)
 
     def test_what_cannot_be_written_is_refused(self):

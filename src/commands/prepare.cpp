@@ -34,7 +34,7 @@ class Preparing {
  public:
   explicit Preparing(const PrepareArguments& arguments)
       : arguments_(arguments),
-        scene_(loadScene(arguments.scene)),
+        scene_(loadScene(arguments.scene).glued()),
         solved_(withoutDimension(scene_)),
         plan_(SurrogatePlan::plan(solved_, SurrogateRange::standard(solved_))),
         paths_(solved_, plan_) {
@@ -170,7 +170,7 @@ int work(const PrepareArguments& arguments) {
 /// Whether a family serves the scene to its requirements.
 bool isServed(const PrepareArguments& arguments) {
   if (arguments.families.empty() || arguments.again) return false;
-  const Scene scene = loadScene(arguments.scene);
+  const Scene scene = loadScene(arguments.scene).glued();
   std::string reason;
   const auto member = findFamilyCell(arguments.families, scene, reason);
   if (!member || member->data->common_error > scene.requirements.force_error) {

@@ -2,6 +2,7 @@
 
 #include <map>
 #include <optional>
+#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -15,6 +16,9 @@
 
 namespace microinjection {
 namespace {
+
+/// Largest relative difference of the needle's force between a held cell and the glued one: ./dev bench suction.
+constexpr double kGluedError = 0.06;
 
 /// Why a scene's own surrogate data cannot be used, and what to do; `call` prepares them.
 std::string missingReason(const CacheRead<SurrogateData>& read, const std::string& call) {
@@ -86,9 +90,10 @@ ServingPlan planBetween(const Scene& scene, const std::string& model, const std:
 
 }  // namespace
 
-ServingPlan planServing(const Scene& scene, const std::string& model, const std::string& families,
+ServingPlan planServing(const Scene& wanted, const std::string& model, const std::string& families,
                         const std::string& call) {
   ServingPlan plan;
+  const Scene scene = wanted.glued();
   if (model == "explicit") {
     plan.served = Served::kExplicit;
     plan.reason = "the cell is the paper's explicit dynamics, as asked for";
@@ -100,12 +105,23 @@ ServingPlan planServing(const Scene& scene, const std::string& model, const std:
   } else {
     plan = planBetween(scene, model, families, call);
   }
+  plan.scene = std::make_shared<const Scene>(scene);
+  if (wanted.holding_pipette.mouth) {
+    plan.glued_error = kGluedError;
+    plan.as_required = plan.as_required && kGluedError <= wanted.requirements.force_error;
+    std::ostringstream note;
+    note << "; suction holds the cell, which is served as glued to a ring of "
+         << 1e6 * scene.holding_pipette.contact_radius << " um: its force is up to " << 100 * kGluedError
+         << " % from that of the held cell";
+    plan.reason += note.str();
+  }
   return plan;
 }
 
-ChosenCellModel makeCellModel(const Scene& scene, const std::string& model, const CellModelConfig& config,
+ChosenCellModel makeCellModel(const Scene& wanted, const std::string& model, const CellModelConfig& config,
                               const std::string& path) {
-  ServingPlan plan = planServing(scene, model, config.families, "rosrun cell_microinjection prepare --scene " + path);
+  ServingPlan plan = planServing(wanted, model, config.families, "rosrun cell_microinjection prepare --scene " + path);
+  const Scene& scene = *plan.scene;
   ChosenCellModel chosen{nullptr, std::move(plan.reason), plan.as_required, nullptr, "only a cell of a family can"};
   std::unique_ptr<CellModel> tracker;
   if (plan.served == Served::kExplicit) {

@@ -35,6 +35,9 @@ struct ServingPlan {
   bool as_required = true;
   bool is_fallback = false;  ///< live, because there are no surrogate data
   SurrogateSource source{};
+  /// What is served in place of the scene: one that suction holds is glued, see Scene::glued().
+  std::shared_ptr<const Scene> scene{};
+  double glued_error = 0;  ///< relative, of the force on the axis, that this adds; 0: the scene is itself
 };
 
 /// The first half of makeCellModel(), for those who do not serve a moving needle. `call`: the command that prepares the

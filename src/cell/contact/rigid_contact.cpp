@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "cell/mechanics/reference_element.h"
 
@@ -49,6 +50,9 @@ template <int Dim>
 RigidContact<Dim>::RigidContact(const LayeredBody<Dim>& body, std::shared_ptr<const RigidSurface> surface,
                                 const RigidContactConfig& config)
     : surface_(std::move(surface)), config_(config) {
+  for (int k = 0; k < Dim; ++k) {
+    if (config_.moves[Dim == 2 ? 2 * k : k]) moving_.push_back(k);
+  }
   for (const auto& facet : body.mesh().facets) {
     if (facet.layer == 0) addFacet(body, facet);
   }
@@ -63,7 +67,7 @@ void RigidContact<Dim>::addFacet(const LayeredBody<Dim>& body, const typename Qu
   for (int a = 0; a < result.nodes; ++a) {
     for (int k = 0; k < Dim; ++k) result.entries.push_back(Dim * facet.nodes[a] + k);
   }
-  for (int k = 0; config_.moves && k < Dim; ++k) result.entries.push_back(body.tipEntry() + (Dim == 2 ? 2 * k : k));
+  for (const int k : moving_) result.entries.push_back(body.tipEntry() + (Dim == 2 ? 2 * k : k));
   for (const ReferenceElement::Point& at : referenceFacet<Dim>().points) {
     Vector x = Vector::Zero();
     Eigen::Matrix<double, Dim, Dim - 1> tangents = Eigen::Matrix<double, Dim, Dim - 1>::Zero();
@@ -102,7 +106,7 @@ typename RigidContact<Dim>::Vector RigidContact<Dim>::relative(const Facet& face
   for (int a = 0; a < facet.nodes; ++a) {
     for (int k = 0; k < Dim; ++k) at[k] += point.shape[a] * state[facet.entries[Dim * a + k]];
   }
-  for (int k = 0; config_.moves && k < Dim; ++k) at[k] -= state[facet.entries[Dim * facet.nodes + k]];
+  for (std::size_t i = 0; i < moving_.size(); ++i) at[moving_[i]] -= state[facet.entries[Dim * facet.nodes + i]];
   return at;
 }
 
@@ -173,7 +177,7 @@ void RigidContact<Dim>::addAdhesion(const Point& point, const Vector& at, Local&
 template <int Dim>
 bool RigidContact<Dim>::evaluate(int index, const Eigen::VectorXd& state, Order order, LocalEnergy& result) const {
   const Facet& facet = facets_[index];
-  const int nodes = facet.nodes, blocks = nodes + (config_.moves ? 1 : 0), size = Dim * blocks;
+  const int nodes = facet.nodes, moving = static_cast<int>(moving_.size()), size = Dim * nodes + moving;
   result.zero = true;
   for (const Point& point : facet.points) {
     Local local;
@@ -187,12 +191,21 @@ bool RigidContact<Dim>::evaluate(int index, const Eigen::VectorXd& state, Order 
     result.energy += local.energy;
     if (order == Order::kEnergy) continue;
     // The relative position moves with the nodes' shape functions, and opposite to the tip.
-    const auto share = [&](int a) { return a < nodes ? point.shape[a] : -1.0; };
-    for (int a = 0; a < blocks; ++a) {
-      result.gradient.template segment<Dim>(Dim * a) += share(a) * local.gradient;
-      for (int b = 0; order == Order::kHessian && b < blocks; ++b) {
-        result.hessian.template block<Dim, Dim>(Dim * a, Dim * b) += share(a) * share(b) * local.hessian;
+    for (int a = 0; a < nodes; ++a) {
+      result.gradient.template segment<Dim>(Dim * a) += point.shape[a] * local.gradient;
+      for (int b = 0; order == Order::kHessian && b < nodes; ++b) {
+        result.hessian.template block<Dim, Dim>(Dim * a, Dim * b) += point.shape[a] * point.shape[b] * local.hessian;
       }
+    }
+    for (int i = 0; i < moving; ++i) {
+      const int own = Dim * nodes + i, k = moving_[i];
+      result.gradient[own] -= local.gradient[k];
+      if (order != Order::kHessian) continue;
+      for (int a = 0; a < nodes; ++a) {
+        result.hessian.template block<Dim, 1>(Dim * a, own) -= point.shape[a] * local.hessian.col(k);
+        result.hessian.template block<1, Dim>(own, Dim * a) -= point.shape[a] * local.hessian.row(k);
+      }
+      for (int j = 0; j < moving; ++j) result.hessian(own, Dim * nodes + j) += local.hessian(k, moving_[j]);
     }
   }
   return true;
@@ -301,6 +314,21 @@ typename RigidContact<Dim>::Ring RigidContact<Dim>::ring(const Eigen::VectorXd& 
   ring.radius /= weight;
   ring.spread = std::sqrt(std::max(square / weight - ring.radius * ring.radius, 0.0));
   return ring;
+}
+
+template <int Dim>
+double RigidContact<Dim>::clearance(const Eigen::VectorXd& state, const Eigen::Vector3d& translation) const {
+  const Vector away = fromSpace<Dim>(translation);
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const Facet& facet : facets_) {
+    for (const Point& point : facet.points) {
+      Vector at = relative(facet, point, state);
+      for (std::size_t i = 0; i < moving_.size(); ++i)
+        at[moving_[i]] += state[facet.entries[Dim * facet.nodes + i]] - away[moving_[i]];
+      smallest = std::min(smallest, surface_->distance(inSpace(at)));
+    }
+  }
+  return smallest;
 }
 
 template <int Dim>

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -18,7 +19,8 @@ struct RigidContactConfig {
   double adhesion_range = 0;                         ///< m, > 0 with adhesion: gap of the largest traction
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< m, of the surface's frame at first contact
   double penalty = 0;                                ///< Pa/m, traction per penetration, > 0
-  bool moves = true;                                 ///< with the tip's translation; false: it stays at the origin
+  /// Whether each component of the place follows that of the tip's translation; else it stays at the origin's.
+  std::array<bool, 3> moves = {true, true, true};
 };
 
 /// Unilateral contact of a body's outer surface with a rigid pipette, a needle's end or a mouth, by penalty at the
@@ -60,6 +62,9 @@ class RigidContact : public EnergyTerm {
   };
   Ring ring(const Eigen::VectorXd& state) const;
 
+  /// m, the smallest distance of the surface from the pipette at a state, were the tip translated by this (m).
+  double clearance(const Eigen::VectorXd& state, const Eigen::Vector3d& translation) const;
+
   /// Largest penetration of the tip into the surface at the last equilibrium, m. It should be small
   /// against the tip's radius.
   double penetration() const { return deepest_; }
@@ -83,7 +88,7 @@ class RigidContact : public EnergyTerm {
     Memory memory, accepted;             ///< of this step, and of the last accepted one
   };
   struct Facet {
-    std::vector<int> entries;  ///< node by node, then the tip's if it moves
+    std::vector<int> entries;  ///< node by node, then those of the tip that the surface follows
     int nodes;
     std::vector<Point> points;
     bool near = false;  ///< to the tip, undeformed: its points may come into contact
@@ -104,6 +109,7 @@ class RigidContact : public EnergyTerm {
 
   std::shared_ptr<const RigidSurface> surface_;
   RigidContactConfig config_;
+  std::vector<int> moving_;  ///< components of a Vector that follow the tip
   std::vector<Facet> facets_;
   double deepest_ = 0;  ///< m, penetration at the last equilibrium
 };

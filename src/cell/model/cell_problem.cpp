@@ -37,7 +37,8 @@ double largestModulus(const Scene& scene) {
 }
 constexpr double kWithinCircle = 1 + 1e-9;
 
-/// Component of the path's translation that is the pressure of a held cell: a section's needle does not use it.
+/// Component of the path's translation that is the pressure of a held cell: the needle of a section, or in a plane of
+/// symmetry, does not use it.
 constexpr int kPressure = 1;
 constexpr double kAnchor = 1e-2;  ///< stiffness of the anchor's springs, over modulus times radius
 constexpr double kOverlap =
@@ -151,16 +152,14 @@ Constraints CellProblem<Dim>::constraints(const Scene& scene) const {
   }
   const bool mirror = symmetry_ == Symmetry::kMirror;
   if (mirror) result.entries[body_->tipEntry() + 1] = Constraints::kFixed;
+  if (scene.holding_pipette.mouth) result.entries[body_->tipEntry() + kPressure] = Constraints::tip(kPressure);
   for (int node = 0; mirror && node < displacedNodes(*body_); ++node) {
     if (body_->mesh().nodes[node][1] == 0) result.entries[Dim * node + 1] = Constraints::kFixed;
   }
   for (int node = 0; Dim == 2 && node < displacedNodes(*body_); ++node) {
     if (body_->mesh().nodes[node][0] == 0) result.entries[Dim * node] = Constraints::kFixed;
   }
-  if (scene.holding_pipette.mouth) {
-    result.entries[body_->tipEntry() + kPressure] = Constraints::tip(kPressure);
-    return result;
-  }
+  if (scene.holding_pipette.mouth) return result;
   std::vector<char> held(body_->nodeCount(), 0);
   for (int node : nodesWithin(*body_, Eigen::Vector2d::Zero(), scene.holding_pipette.contact_radius, -1)) {
     held[node] = 1;
@@ -195,6 +194,7 @@ void CellProblem<Dim>::addContact(const Scene& scene, EquilibriumSystem::Terms& 
   const Scene::Needle& needle = scene.needle;
   const RoundedTip tip = RoundedTip::make(needle.tip.shape, needle.tip.radius, needle.tip.edge_radius);
   RigidContactConfig config = contactConfig(scene, needle.contact, needle.tip.radius);
+  config.moves[kPressure] = !scene.holding_pipette.mouth;
   config.origin << needle.offset, tip.touchHeight(scene.radius(), needle.offset);
   contact_ = std::make_shared<RigidContact<Dim>>(*body_, std::make_shared<RoundedTip>(tip), config);
   deepest_ = kDeepest * needle.tip.radius;
@@ -203,11 +203,12 @@ void CellProblem<Dim>::addContact(const Scene& scene, EquilibriumSystem::Terms& 
 
 template <int Dim>
 void CellProblem<Dim>::addSuction(const Scene& scene, EquilibriumSystem::Terms& terms) {
-  if (Dim == 3) throw ConfigError("holding_pipette/mouth: a cell that suction holds is solved in its section only");
+  if (Dim == 3 && symmetry_ != Symmetry::kMirror)
+    throw ConfigError("holding_pipette/mouth: a cell that suction holds is solved with the needle in y = 0 only");
   const Scene::Mouth& mouth = *scene.holding_pipette.mouth;
   const auto lip = std::make_shared<PipetteMouth>(mouth.inner_radius, mouth.outer_radius, mouth.edge_radius, -1);
   RigidContactConfig config = contactConfig(scene, mouth.contact, mouth.edge_radius);
-  config.moves = false;
+  config.moves = {false, false, false};
   config.origin.z() = kOverlap * mouth.edge_radius - lip->touchDistance(scene.radius());
   lip_ = std::make_shared<RigidContact<Dim>>(*body_, lip, config);
   const double modulus = largestModulus(scene), radius = scene.radius();
@@ -222,6 +223,7 @@ void CellProblem<Dim>::addSuction(const Scene& scene, EquilibriumSystem::Terms& 
       std::make_shared<ProximalAnchor>(entries, std::vector<double>(nodes, 1.0 / nodes), kAnchor * modulus * radius);
   terms.insert(terms.end(), {lip_, suction_, anchor_});
   holding_pressure_ = mouth.pressure;
+  on_axis_ = scene.needle.offset.isZero(0);
   away_ = radius / 4;
 }
 
@@ -235,12 +237,27 @@ LoadPath::Result CellProblem<Dim>::hold(double pressure) {
   }
   result = path_->advance({0, length, away_});
   if (!result.converged) return result;
-  // The pole moves, and the surface about it hardly changes its shape: the needle meets the cell there.
-  const auto& nodes = body_->mesh().nodes;
-  const auto lower = [](const auto& a, const auto& b) { return a[Dim - 1] < b[Dim - 1]; };
-  const auto pole = std::max_element(nodes.begin(), nodes.begin() + displacedNodes(*body_), lower) - nodes.begin();
-  touch_ = path_->state()[Dim * pole + Dim - 1];
+  touch_ = touchHeight();
   return result;
+}
+
+/// m, the needle's translation along z at which it touches the cell of the present state, from its line now. On the
+/// axis it meets the pole, about which the surface hardly changes its shape; the mesh's points beside it would be too
+/// low.
+template <int Dim>
+double CellProblem<Dim>::touchHeight() const {
+  const auto& nodes = body_->mesh().nodes;
+  if (on_axis_) {
+    const auto lower = [](const auto& a, const auto& b) { return a[Dim - 1] < b[Dim - 1]; };
+    const auto pole = std::max_element(nodes.begin(), nodes.begin() + displacedNodes(*body_), lower) - nodes.begin();
+    return path_->state()[Dim * pole + Dim - 1];
+  }
+  double low = -away_, high = away_;
+  while (high - low > 1e-9 * away_) {
+    const double middle = (low + high) / 2;
+    (contact_->clearance(path_->state(), {0, 0, middle}) > 0 ? high : low) = middle;
+  }
+  return high;
 }
 
 template <int Dim>
@@ -249,10 +266,11 @@ HeldCell CellProblem<Dim>::held() const {
   HeldCell held;
   held.pressure = path_->translation()[kPressure] * suction_->unit();
   held.tongue_length = suction_->apex(state);
-  held.tongue_volume = suction_->volume(state);
+  const double whole = symmetry_ == Symmetry::kMirror ? 2 : 1;  // of the cell, half of which is solved
+  held.tongue_volume = whole * suction_->volume(state);
   held.seal_radius = suction_->sealRadius();
-  held.clamping_force = lip_->ring(state).force;
-  held.imbalance = anchor_->residualForce(state)[Dim - 1];
+  held.clamping_force = whole * lip_->ring(state).force;
+  held.imbalance = whole * anchor_->residualForce(state)[Dim - 1];
   held.outline = outlineOf(*body_, state);
   return held;
 }

@@ -42,7 +42,7 @@ class CellProblem {
  public:
   /// Throws std::invalid_argument when the needle's disc and the holding pipette overlap, or when
   /// kMirror is used without the half y >= 0 of a mesh in space and a contact point in y = 0. Throws ConfigError for a
-  /// cell in space that suction holds: it is solved in its section.
+  /// cell in space that suction holds, unless it has mirror symmetry.
   CellProblem(const Scene& scene, QuadraticMesh<Dim> mesh, ElementKind element, Symmetry symmetry = Symmetry::kNone);
   /// A body that only the constraints' displacements load. Throws as LoadPath does.
   CellProblem(std::shared_ptr<LayeredBody<Dim>> body, const Constraints& constraints, const LoadPathConfig& path_config,
@@ -52,7 +52,7 @@ class CellProblem {
   /// The tip moves along the straight line from its present position at constant speed in
   /// `duration` (s; infinite: viscous stresses have relaxed). On failure the state stays at the
   /// last equilibrium. A section takes displacements along z only. First contact with a cell that suction holds is that
-  /// with the cell as its pressure has deformed it.
+  /// with the cell as its pressure has deformed it, straight below the needle.
   IndentationSolution solve(const Eigen::Vector3d& tip_displacement,
                             double duration = std::numeric_limits<double>::infinity());
 
@@ -74,6 +74,7 @@ class CellProblem {
   Constraints constraints(const Scene& scene) const;
   void addContact(const Scene& scene, EquilibriumSystem::Terms& terms);
   void addSuction(const Scene& scene, EquilibriumSystem::Terms& terms);
+  double touchHeight() const;
   static LoadPathConfig pathConfig(const Scene& scene, bool linear);
 
   Symmetry symmetry_ = Symmetry::kNone;
@@ -85,6 +86,7 @@ class CellProblem {
   std::shared_ptr<ProximalAnchor> anchor_;
   double holding_pressure_ = 0;  ///< Pa, that solve() holds the cell by
   double away_ = 0;              ///< m, of the needle while the cell is taken
+  bool on_axis_ = true;          ///< the needle's line
   std::optional<double> touch_;  ///< m, tip's translation along z at first contact with the held cell; none: not held
   std::unique_ptr<EquilibriumSystem> system_;
   std::unique_ptr<LoadPath> path_;

@@ -8,6 +8,7 @@
 #include "base/config_reader.h"
 #include "base/errors.h"
 #include "base/parse_number.h"
+#include "cell/contact/pipette_mouth.h"
 #include "cell/material/material_parameter.h"
 #include "cell/model/plausible_scene.h"
 #include "cell/model/read_quantity.h"
@@ -290,6 +291,16 @@ void Scene::requireContinuum(const std::string& purpose) const {
 void Scene::requireGlued(const std::string& purpose) const {
   if (holding_pipette.mouth)
     throw ConfigError("holding_pipette/mouth: must be left out for " + purpose + "; give contact_radius instead");
+}
+
+Scene Scene::glued() const {
+  Scene result = *this;
+  if (const std::optional<Mouth>& mouth = holding_pipette.mouth) {
+    const PipetteMouth lip(mouth->inner_radius, mouth->outer_radius, mouth->edge_radius, -1);
+    result.holding_pipette.contact_radius = lip.touchRadius(radius());
+    result.holding_pipette.mouth.reset();
+  }
+  return result;
 }
 
 Scene parseScene(const YAML::Node& node, const std::string& origin) {

@@ -135,6 +135,10 @@ struct Scene {
   void requireContinuum(const std::string& purpose) const;
   /// Throws ConfigError that names the purpose for a cell that suction holds.
   void requireGlued(const std::string& purpose) const;
+  /// The scene with its cell glued to a ring where it would first touch the mouth that now holds it by suction; itself
+  /// without a mouth. On the axis the needle's force then is up to 6 % from that of the held cell, and from a suction
+  /// of a twentieth of the modulus on up to 3 % (doc/reference/benchmarks.md, Suction).
+  Scene glued() const;
 };
 
 /// disc (flat, with a sharp edge), hemisphere, rounded_flat.

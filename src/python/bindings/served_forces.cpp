@@ -34,6 +34,8 @@ ServedForces::ServedForces(std::shared_ptr<const Scene> scene, const std::string
   if (model != "auto" && model != "surrogate" && model != "live")
     throw ConfigError("model = " + model + ": must be one of: auto, surrogate, live");
   const ServingPlan plan = planServing(*scene_, model, families, "prepare --scene with the scene's file");
+  scene_ = plan.scene;
+  glued_error_ = plan.glued_error;
   description_ = plan.reason;
   family_ = plan.source.family;
   if (plan.served == Served::kSurrogate) {
@@ -51,7 +53,7 @@ std::string ServedForces::refusal(const Eigen::Vector3d& axis) const {
 
 std::optional<std::pair<double, double>> ServedForces::expectedError() const {
   if (!data_) return std::nullopt;
-  return std::pair(data_->median_error, data_->common_error);
+  return std::pair(data_->median_error + glued_error_, data_->common_error + glued_error_);
 }
 
 void ServedForces::evaluate(const Eigen::Ref<const Eigen::Matrix3Xd>& tips, bool along, const Wanted& wanted,

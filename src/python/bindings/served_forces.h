@@ -63,6 +63,7 @@ class ServedForces {
                     void (*progress)()) const;
 
   std::shared_ptr<const Scene> scene_;
+  double glued_error_ = 0;                     ///< see ServingPlan
   std::shared_ptr<const SurrogateData> data_;  ///< null: live
   std::shared_ptr<const FamilyData> family_;   ///< that contains the scene; null: none
   std::shared_ptr<const LiveCell> live_;

@@ -46,6 +46,26 @@ class ServeNeedle : public testing::Test {
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
+/// A cell that suction holds is served as one that is glued where the lip touches it, and that is said.
+TEST_F(ServeNeedle, AHeldCellIsServedAsGluedAndSaysHowFarThatIsOff) {
+  Scene held = pipette();
+  Scene::Mouth mouth;
+  mouth.inner_radius = 10e-6;
+  mouth.outer_radius = 40e-6;
+  mouth.edge_radius = 2.5e-6;
+  mouth.pressure = -2000;
+  held.holding_pipette.mouth = mouth;
+  const ChosenCellModel served = makeCellModel(held, "auto", {}, "a.yaml");
+  EXPECT_FALSE(served.as_required);
+  EXPECT_TRUE(has(served.description, "suction holds the cell, which is served as glued to a ring of 11.4"))
+      << served.description;
+  EXPECT_TRUE(has(served.description, "up to 6 %")) << served.description;
+  const ServingPlan plan = planServing(held, "live", "", "");
+  EXPECT_FALSE(plan.scene->holding_pipette.mouth);
+  EXPECT_NEAR(plan.scene->holding_pipette.contact_radius, 12.5e-6 * 28 / 30.5, 1e-12);
+  EXPECT_EQ(planServing(pipette(), "live", "", "").glued_error, 0);
+}
+
 TEST_F(ServeNeedle, AnUnpreparedRoundedTipIsLiveWithAWarning) {
   CellModelConfig config;
   config.live.fixed_period = true;

@@ -19,7 +19,7 @@ template <int Dim>
 struct Held {
   Held() : body(mesh(), ElementKind::kP2, {makeMaterial({})}), mouth(kMouth, 30e-6, kEdge, -1) {
     RigidContactConfig config;
-    config.moves = false;
+    config.moves = {false, false, false};
     config.origin.z() = plane();
     config.penalty = 1e12;
     lip = std::make_shared<RigidContact<Dim>>(body, std::make_shared<PipetteMouth>(mouth), config);

@@ -1,0 +1,164 @@
+#!/usr/bin/python3
+"""Cells that suction holds: tongues against a closed form and a second solver, the needle's force, the modulus from tongues.
+
+    ./dev bench suction                         # GetFEM where it is installed (./dev setup --peers)
+    ./dev bench suction -- --cells 10 --studies 'half-space,modulus'
+
+One table, a row a case; a study is what its cases ask:
+  half-space     a small mouth on a large cell: Phi of L/a = 3 Phi dp / (2 pi E), which is 2.0 to 2.1 for a flat mouth
+                 (Theret and others, J. Biomech. Eng. 110, 1988)
+  second solver  tongue of six cells by this project and by GetFEM, each with its own error
+  needle         force on a needle of a held cell, over that of the cell glued to a ring of the seal's radius
+  modulus        found from six tongues with the noise of an image, of random cells
+"""
+import argparse
+import csv
+import importlib.util
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy
+
+from cell_microinjection import ConfigError, Scene, aspirate, identify_tongue, indent
+
+PEER = Path(__file__).resolve().parent / 'peers' / 'getfem_held_cell.py'
+LINES = ('study', 'case', 'value', 'error', 'other', 'other error', 'unit', 's')
+MODULUS = 5e3   # Pa
+# Radii of cell, bore, pipette and lip's edge, um; Poisson's ratio; suctions over the modulus.
+CELLS = ((40, 12, 32, 2, 0.49, (0.01, 0.05, 0.1, 0.2)), (40, 12, 32, 4, 0.49, (0.01, 0.05, 0.1, 0.2)), (40, 20, 45, 3, 0.49, (0.01, 0.05, 0.1)),
+         (60, 8, 20, 2, 0.45, (0.01, 0.05, 0.1, 0.2)), (28, 7, 25, 1.5, 0.49, (0.01, 0.05, 0.1, 0.2)), (75, 30, 60, 6, 0.4, (0.01, 0.05, 0.1)))
+
+
+def held_scene(radius, inner, outer, edge, poisson_ratio, modulus=MODULUS, model='neo_hookean', pressure=-1.0):
+    """@returns the Scene of a homogeneous cell at a mouth without friction; lengths in um"""
+    return Scene({
+        'cell': {'diameter': 2e-6 * radius, 'material': {'model': model, 'young_modulus': modulus, 'poisson_ratio': poisson_ratio}},
+        'holding_pipette': {'mouth': {'inner_radius': 1e-6 * inner, 'outer_radius': 1e-6 * outer, 'edge_radius': 1e-6 * edge,
+                                      'pressure': pressure, 'contact': {'mode': 'sliding'}}},
+        'needle': {'tip': {'shape': 'hemisphere', 'radius': 0.08e-6 * radius}}})
+
+
+def half_space():
+    """Phi, by how the tongue grows between two suctions, for mouths of other sizes on one cell."""
+    for inner in (1.0, 2.0, 4.0):
+        begin = time.perf_counter()
+        scene = held_scene(400, inner, 2 * inner, 0.02 * inner, 0.499, model='linear')
+        drawn = aspirate(scene, [-0.02 * MODULUS, -0.04 * MODULUS])
+        rise = numpy.diff(drawn['tongue_length'])[0] / (1e-6 * inner) / 0.02
+        phi = 2 * numpy.pi / 3 * rise
+        yield 'half-space', f'a/R = {inner / 400:g}', phi, phi * drawn['error_estimate'].max(), 2.05, 0.05, 'Phi', time.perf_counter() - begin
+
+
+def peer_tongues(scene, pressures, folder):
+    """@returns [(length, error)], m, by the second solver; nan where it has none."""
+    scene.save(folder / 'scene.yaml')
+    subprocess.run([sys.executable, '-B', PEER, folder / 'scene.yaml', ','.join(f'{p:g}' for p in pressures), folder / 'peer.csv'],
+                   check=True, stdout=subprocess.DEVNULL)
+    with (folder / 'peer.csv').open(encoding='utf-8') as file:
+        return [(float(row['tongue_length_m']), float(row['error_estimate_m'])) for row in csv.DictReader(file)]
+
+
+def second_solver():
+    missing = importlib.util.find_spec('getfem') is None
+    for number, (radius, inner, outer, edge, poisson_ratio, suctions) in enumerate(CELLS, 1):
+        begin = time.perf_counter()
+        scene = held_scene(radius, inner, outer, edge, poisson_ratio)
+        pressures = [-MODULUS * suction for suction in suctions]
+        drawn = aspirate(scene, pressures, tolerance=0.002)
+        took = (time.perf_counter() - begin) / len(suctions)
+        with tempfile.TemporaryDirectory() as folder:
+            peer = [(numpy.nan, numpy.nan)] * len(suctions) if missing else peer_tongues(scene, pressures, Path(folder))
+        for i, (length, error) in enumerate(peer):
+            own = drawn['tongue_length'][i]
+            yield ('second solver', f'cell {number}, p/E = {suctions[i]:g}', 1e6 * own, 1e6 * abs(own) * drawn['error_estimate'][i],
+                   1e6 * length, 1e6 * error, 'um', took)
+
+
+def needle():
+    for suction in (0.0, 0.02, 0.05, 0.1, 0.2):
+        begin = time.perf_counter()
+        held = held_scene(40, 12, 32, 2, 0.49, pressure=-MODULUS * suction)
+        keys = held.to_dict()
+        seal = aspirate(held)['seal_radius'][0]
+        keys['holding_pipette'] = {'contact_radius': float(seal)}
+        depths = numpy.array([2e-6, 4e-6, 8e-6, 12e-6])
+        own, glued = indent(held, depths), indent(Scene(keys), depths)
+        took = time.perf_counter() - begin
+        for i, depth in enumerate(depths):
+            yield ('needle', f'p/E = {suction:g}, {1e6 * depth:g} um', 1e6 * own['force'][i, 2], 1e6 * own['force'][i, 2] * own['error_estimate'][i],
+                   1e6 * glued['force'][i, 2], 1e6 * glued['force'][i, 2] * glued['error_estimate'][i], 'uN', took)
+
+
+def modulus(count, noise, seed):
+    """Of random cells; the tongues are those of a converged solution, read from any place with an image's noise."""
+    random = numpy.random.default_rng(seed)
+    for number in range(count):
+        begin = time.perf_counter()
+        radius = random.uniform(25, 80)
+        inner, edge, true = radius * random.uniform(0.15, 0.4), radius * random.uniform(0.03, 0.08), numpy.exp(random.uniform(*numpy.log([1e3, 2e4])))
+        scene = held_scene(radius, inner, inner + 4 * edge, edge, random.uniform(0.4, 0.49), true)
+        pressures = -true * random.uniform(0.1, 0.2) * numpy.linspace(1 / 6, 1, 6)
+        lengths = aspirate(scene, pressures)['tongue_length'] + random.uniform(-2e-6, 2e-6) + random.normal(0, noise, 6)
+        told = scene.replace({'cell/material/young_modulus': 5e3})
+        try:
+            found = identify_tongue(pressures, lengths, told)['young_modulus']
+            half = (found.high - found.low) / 2
+        except ConfigError as error:
+            print(f'suction: cell {number + 1}: {error}', file=sys.stderr)
+            found, half = None, numpy.nan
+        yield 'modulus', f'cell {number + 1}', found.value if found else numpy.nan, half, true, 0, 'Pa', time.perf_counter() - begin
+
+
+def summary(study, rows):
+    """One line on the rows of a study."""
+    own, error, other, other_error = (numpy.array([row[k] for row in rows], dtype=float) for k in (2, 3, 4, 5))
+    good = numpy.isfinite(own) & numpy.isfinite(other)
+    if not good.any():
+        return f'{study}: nothing to compare with'
+    apart = numpy.abs(own / other - 1)[good]
+    text = f'{study}: {good.sum()} of {len(rows)} cases, apart by {100 * statistics.median(apart):.2g} % (median), {100 * apart.max():.2g} % (worst)'
+    within = numpy.abs(own - other)[good] <= (error + other_error)[good]
+    return text + f'; within both errors in {within.sum()}'
+
+
+def parse_arguments():
+    studies = 'half-space,second solver,needle,modulus'
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('--out', type=Path, required=True, help='folder of suction.csv')
+    parser.add_argument('--studies', default=studies, help='default %(default)s')
+    parser.add_argument('--cells', type=int, default=30, help='whose modulus is found (default %(default)s)')
+    parser.add_argument('--noise', type=float, default=0.1e-6, help='m, of a tongue in an image (default %(default)s)')
+    parser.add_argument('--seed', type=int, default=1, help='of these cells (default %(default)s)')
+    arguments = parser.parse_args()
+    arguments.studies = arguments.studies.split(',')
+    unknown = set(arguments.studies) - set(studies.split(','))
+    if unknown:
+        parser.error(f'--studies: no study {", ".join(sorted(unknown))}; there are: {studies}')
+    return arguments
+
+
+def main():
+    arguments = parse_arguments()
+    studies = {'half-space': half_space, 'second solver': second_solver, 'needle': needle,
+               'modulus': lambda: modulus(arguments.cells, arguments.noise, arguments.seed)}
+    lines = []
+    with (arguments.out / 'suction.csv').open('w', encoding='utf-8', newline='') as file:
+        table = csv.writer(file)
+        table.writerow(LINES)
+        for study in arguments.studies:
+            rows = []
+            for row in studies[study]():
+                rows.append(row)
+                table.writerow([row[0], row[1], *(f'{value:.6g}' for value in row[2:6]), row[6], f'{row[7]:.3g}'])
+                file.flush()
+                print(f'{row[0]}: {row[1]}: {row[2]:.5g} +- {row[3]:.2g} {row[6]}, other {row[4]:.5g} +- {row[5]:.2g}', flush=True)
+            lines.append(summary(study, rows))
+    print('\n'.join(lines))
+
+
+if __name__ == '__main__':
+    main()
