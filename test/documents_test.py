@@ -66,6 +66,17 @@ class TheDocuments(unittest.TestCase):
     def test_have_every_key_of_a_scene(self):
         self.assert_table(check_scene_keys, 'doc/reference/scene_file.md')
 
+    def test_keep_the_sizes_of_a_rig_by_the_names_that_the_session_knows(self):
+        shown = re.search('      rig:\n((?:        .*\n)+)', self.project.text('doc/guide/your_rig.md'))[1]
+        known = re.search(r'kSizes\[\] = (.*?);', self.project.text('src/session/rig_description.cpp'), re.DOTALL)[1]
+        self.assertEqual(sorted(re.findall(r'^ +(\w+):', shown, re.MULTILINE)), re.findall('"(.*?)"', known))
+
+    def test_have_the_holding_radius_of_the_families(self):
+        text = ' '.join(self.project.text('doc/guide/your_cell.md').split())
+        for family, form in (('zona', 'with a zona'), ('homogeneous', 'of a cell of one material')):
+            low, high = re.search(r'holding_radius: \[(.*), (.*)\]', self.project.text(f'config/families/{family}.yaml')).groups()
+            self.assertIn(f'{low} to {high} R {form}', text)
+
     def test_are_read_token_by_token(self):
         self.assertGreater(len(self.project.topics), 40)
         self.assertGreater(len(self.project.keys), 200)

@@ -250,7 +250,9 @@ class Fit {
     return "for a cell of " + shortNumber(2e6 * cell_.radius, 4) + " um: the needle starts at " +
            shortNumber(1e6 * rig_.sizes().start_height, 4) + " um, stops at " +
            shortNumber(1e6 * number(kController, "force_limit"), 3) + " uN and " +
-           shortNumber(1e6 * number(kController, "depth_limit"), 3) + " um of depth";
+           shortNumber(1e6 * number(kController, "depth_limit"), 3) + " um of depth; mouth at " +
+           shortNumber(1e6 * rig_.sizes().mouth_height, 4) + " um, dish at " +
+           shortNumber(1e6 * rig_.sizes().floor_height, 4) + " um";
   }
 
   const Session& session_;

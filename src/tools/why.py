@@ -58,7 +58,9 @@ def main():
     try:
         rospy.get_master().getPid()
     except (OSError, ProtocolError, ValueError):
-        print('why: there is no ROS master: no session runs, or ROS_MASTER_URI names another one', file=sys.stderr)
+        print('why: there is no ROS master: no session runs, or ROS_MASTER_URI names another one. A session that was started '
+              'in ./dev shell --isolated is found only from there: try again in a second ./dev shell --isolated',
+              file=sys.stderr)
         return 3
     rospy.init_node('why', anonymous=True, disable_signals=True)
     queue = Queue()

@@ -234,6 +234,33 @@ TEST_F(SessionFitTest, TheUserHasTheLastWord) {
   EXPECT_NE(found.robot_description.find("-0.00044"), std::string::npos);
 }
 
+/// The example of doc/guide/your_rig.md.
+TEST_F(SessionFitTest, ARigOfOnesOwnFollowsTheCellUnlessItsSizesAreOverridden) {
+  std::ifstream in(kPackage + "/urdf/rig.urdf");
+  const std::string urdf((std::istreambuf_iterator<char>(in)), {});
+  const std::vector<std::string> own = {"rig.name:=zaber", "rig.urdf:=" + file("my_rig.urdf", urdf)};
+  const SessionFit fitted = fit(large(76.0 / 56), "", own);
+  const Urdf scaled(fitted.robot_description);
+  EXPECT_NEAR(scaled.height("world_to_dish"), -21.4e-6, 0.1e-6);
+  EXPECT_NEAR(scaled.height("world_to_manipulator_base"), 81.4e-6, 0.1e-6);
+  const std::string heights = "; mouth at -38 um, dish at -81.43 um";
+  EXPECT_NE(fitted.text.find(heights), std::string::npos) << fitted.text;
+
+  const SessionFit kept = fit(large(76.0 / 56),
+                              "rig: {start_height: 60.0e-6, mouth_height: -38.0e-6, floor_height: -60.0e-6,\n"
+                              "      travel: 200.0e-6, pipette_radius: 30.0e-6, pipette_length: 200.0e-6}",
+                              own);
+  const Urdf mine(kept.robot_description);
+  EXPECT_NEAR(mine.height("world_to_dish"), 0, 1e-12);
+  EXPECT_NEAR(mine.height("world_to_objective"), 0, 1e-12);
+  EXPECT_NEAR(mine.height("world_to_manipulator_base"), 60e-6, 1e-12);
+  EXPECT_NEAR(mine.height("world_to_holding_pipette"), -38e-6, 1e-12);
+  EXPECT_NEAR(mine.find("joint", "manipulator_z", {"limit"})->DoubleAttribute("lower"), -200e-6, 1e-12);
+  const auto* holder = mine.find("link", "holding_pipette", {"collision", "geometry", "cylinder"});
+  EXPECT_NEAR(holder->DoubleAttribute("radius"), 30e-6, 1e-12);
+  EXPECT_NEAR(holder->DoubleAttribute("length"), 200e-6, 1e-12);
+}
+
 TEST_F(SessionFitTest, NamesWhatDoesNotFit) {
   const std::pair<std::string, std::string> cases[] = {
       {"rig: {start_height: 20e-6}", "rig/start_height = 2e-05 m: the needle starts in the cell"},

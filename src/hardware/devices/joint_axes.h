@@ -25,7 +25,8 @@ struct AxisOrder {
 };
 
 /// Maps a device's axes to the URDF's joints: joint i is at origin[i] (m) when its axis reads 0,
-/// and moves in the same direction (1) or the opposite one (-1).
+/// and moves in the same direction (1) or the opposite one (-1). A joint is no place of the tip: joint z at 0 has the
+/// tip at start_height above the cell's centre (doc/guide/your_rig.md, Find the origin).
 struct JointAxes {
   Eigen::Vector3d directions = Eigen::Vector3d::Ones();
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< m

@@ -48,7 +48,8 @@ Lamp ofController(const SessionView& session) {
       return {Light::kRed, state + session.hold_reason};
     case OperatingState::kPaused: {
       const bool said = session.hold_reason.empty() || session.hold_reason == toText(OperatingState::kPaused);
-      return {Light::kYellow, state + (said ? "the needle is held; Resume, Withdraw or Home" : session.hold_reason)};
+      const char* const ways = session.byHand() ? "Resume or Home" : "Resume, Withdraw or Home";
+      return {Light::kYellow, state + (said ? std::string("the needle is held; ") + ways : session.hold_reason)};
     }
     case OperatingState::kEnabled:
       break;

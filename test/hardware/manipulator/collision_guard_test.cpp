@@ -69,6 +69,25 @@ TEST_F(RigGuard, WhoIsTooNearMayLeaveOnly) {
   EXPECT_EQ(guard_.blocksPath(at(0, 0, -27), at(10, 0, -27)), "");
 }
 
+/// An inverted microscope (doc/guide/your_camera.md): z lies flat, and y points up, from the dish.
+TEST(TurnedDish, IsBelowAlongY) {
+  std::string xml = rigUrdf();
+  for (const char* name : {"dish", "objective"})
+    xml = std::regex_replace(xml, std::regex(std::string("<joint name=\"world_to_") + name + "\" type=\"fixed\">"),
+                             std::string("<joint name=\"turned_") + name +
+                                 "\" type=\"fixed\"><origin xyz=\"0 20e-6 0\" rpy=\"-1.5707963 0 0\"/>");
+  const auto at = [](double x, double y, double z) { return Eigen::Vector3d(1e-6 * Eigen::Vector3d(x, y, z - 60)); };
+  const CollisionGuard straight(xml, ManipulatorGeometry::fromUrdf(xml), kMargin);
+  EXPECT_NE(straight.blocks(at(0, 0, 28)).find("dish"), std::string::npos);  // the shaft lies in the floor
+  const std::regex shaft(R"~(<collision>\s*<origin xyz="0 0 (-22.25e-3|0.555e-3|3.05e-3)"/>[\s\S]*?</collision>)~");
+  const std::string bent = std::regex_replace(xml, shaft, "");  // what a bend lifts away from it
+  const CollisionGuard guard(bent, ManipulatorGeometry::fromUrdf(bent), kMargin);
+  EXPECT_EQ(guard.blocks(at(0, 0, 0)), "");
+  EXPECT_EQ(guard.blocks(at(100, 100, -100)), "");  // beside the holding pipette, which lies along -z
+  EXPECT_EQ(guard.blocks(at(100, -36, -100)), "");  // floor at -60 + 20 um
+  EXPECT_NE(guard.blocks(at(100, -39, -100)).find("dish"), std::string::npos);
+}
+
 TEST_F(RigGuard, SeesTheTiltedPipette) {
   const double tilt = 1.2;
   const ManipulatorGeometry tilted = ManipulatorGeometry::fromUrdf(rigUrdf(), tilt);

@@ -101,6 +101,11 @@ TEST(Headline, SaysWhatHoldsTheNeedle) {
   session.hold_reason = "force along the pipette 2e-05 N, allowed 1.5e-05 N";
   EXPECT_EQ(headline(session).light, Light::kYellow);
   EXPECT_EQ(headline(session).text, "PAUSED: " + session.hold_reason);
+  session.hold_reason.clear();
+  EXPECT_EQ(headline(session).text, "PAUSED: the needle is held; Resume, Withdraw or Home");
+  session.settings.mode = "manual";  // in which withdraw is refused
+  EXPECT_EQ(headline(session).text, "PAUSED: the needle is held; Resume or Home");
+  session.settings.mode.clear();
   session.operating = OperatingState::kEnabled;
   session.hold_reason.clear();
   session.waits = true;
