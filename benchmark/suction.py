@@ -28,6 +28,7 @@ from cell_microinjection import ConfigError, Scene, aspirate, identify_tongue, i
 PEER = Path(__file__).resolve().parent / 'peers' / 'getfem_held_cell.py'
 LINES = ('study', 'case', 'value', 'error', 'other', 'other error', 'unit', 's')
 MODULUS = 5e3   # Pa
+PEER_SIZE = 1.4  # of the second solver's coarsest mesh: it has a quarter of the lip's edge there at 1
 # Radii of cell, bore, pipette and lip's edge, um; Poisson's ratio; suctions over the modulus.
 CELLS = ((40, 12, 32, 2, 0.49, (0.01, 0.05, 0.1, 0.2)), (40, 12, 32, 4, 0.49, (0.01, 0.05, 0.1, 0.2)), (40, 20, 45, 3, 0.49, (0.01, 0.05, 0.1)),
          (60, 8, 20, 2, 0.45, (0.01, 0.05, 0.1, 0.2)), (28, 7, 25, 1.5, 0.49, (0.01, 0.05, 0.1, 0.2)), (75, 30, 60, 6, 0.4, (0.01, 0.05, 0.1)))
@@ -47,7 +48,7 @@ def half_space():
     for inner in (1.0, 2.0, 4.0):
         begin = time.perf_counter()
         scene = held_scene(400, inner, 2 * inner, 0.02 * inner, 0.499, model='linear')
-        drawn = aspirate(scene, [-0.02 * MODULUS, -0.04 * MODULUS])
+        drawn = aspirate(scene, [-0.02 * MODULUS, -0.04 * MODULUS], tolerance=0.02)
         rise = numpy.diff(drawn['tongue_length'])[0] / (1e-6 * inner) / 0.02
         phi = 2 * numpy.pi / 3 * rise
         yield 'half-space', f'a/R = {inner / 400:g}', phi, phi * drawn['error_estimate'].max(), 2.05, 0.05, 'Phi', time.perf_counter() - begin
@@ -56,10 +57,10 @@ def half_space():
 def peer_tongues(scene, pressures, folder):
     """@returns [(length, error)], m, by the second solver; nan where it has none."""
     scene.save(folder / 'scene.yaml')
-    subprocess.run([sys.executable, '-B', PEER, folder / 'scene.yaml', ','.join(f'{p:g}' for p in pressures), folder / 'peer.csv'],
-                   check=True, stdout=subprocess.DEVNULL)
+    subprocess.run([sys.executable, '-B', PEER, folder / 'scene.yaml', ','.join(f'{p:g}' for p in pressures), folder / 'peer.csv',
+                    '--size-factor', str(PEER_SIZE)], check=True, stdout=subprocess.DEVNULL)
     with (folder / 'peer.csv').open(encoding='utf-8') as file:
-        return [(float(row['tongue_length_m']), float(row['error_estimate_m'])) for row in csv.DictReader(file)]
+        return [(float(row['tongue_length_m']), float(row['tongue_error_m'])) for row in csv.DictReader(file)]
 
 
 def second_solver():

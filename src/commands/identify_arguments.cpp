@@ -142,7 +142,8 @@ std::optional<IdentifyArguments> parseIdentifyArguments(int argc, char** argv) {
   add("reading-error", po::value(&reading_error), "of the point's force, relative: half of its interval of 95 %");
   add("depth-error", po::value(&depth_error), "m, same, of the point's depth");
   add("scene", po::value(&arguments.scene), "file with the cell's sizes and the tip, SI units");
-  add("model", po::value(&models), "models, the first one for --out; default: family,hertz with a scene, else hertz");
+  add("model", po::value(&models),
+      "models, the first one for --out; default: family,hertz with a scene, else hertz; not with --tongue");
   add("free", po::value(&free), "ratios of the family to find, too: core_modulus, shell_thickness, tip_radius, ...");
   add("prony", po::value(&arguments.identification.prony_terms)->default_value(0),
       "number of relaxation times to find");

@@ -76,6 +76,20 @@ TEST_F(AspirateCommand, SaysWhereTheCellIsDrawnIn) {
   EXPECT_NE(done.err.find("-5000 Pa: not converged: "), std::string::npos) << done.err;
 }
 
+/// `indent` solves a held cell on its axis, and says why not beside it.
+TEST_F(AspirateCommand, IndentTakesTheSameScene) {
+  const auto indent = [&](const std::string& more) {
+    return std::system(("cd " + directory_ + " && " MICROINJECTION_INDENT " --scene held.yaml --depths 4e-6 " + more +
+                        " >out.txt 2>err.txt")
+                           .c_str());
+  };
+  ASSERT_EQ(WEXITSTATUS(indent("--tolerance 0.02")), 0) << read(directory_ + "err.txt");
+  EXPECT_NE(read(directory_ + "out.txt").find(",1,"), std::string::npos);  // converged
+  EXPECT_EQ(WEXITSTATUS(indent("--lateral 1e-6,0")), 2);
+  EXPECT_NE(read(directory_ + "err.txt").find("holding_pipette/mouth: must be left out for a needle beside the axis"),
+            std::string::npos);
+}
+
 TEST_F(AspirateCommand, NamesWhatIsWrong) {
   std::ofstream(directory_ + "glued.yaml")
       << "cell: {diameter: 80e-6, material: {model: neo_hookean, young_modulus: 5e3, poisson_ratio: 0.49}}\n"

@@ -72,6 +72,32 @@ TEST_F(IdentifyCommand, APointHasTheModulusOfTheSceneThatIndentSolves) {
   EXPECT_NE(outcome.out.find("not tested"), std::string::npos) << outcome.out;
 }
 
+/// What `aspirate` solves has the scene's modulus, whatever modulus the scene says and wherever the lengths begin.
+TEST_F(IdentifyCommand, TonguesHaveTheModulusOfTheSceneThatAspirateSolves) {
+  const std::string scene = std::string(kCells) + "mouse_oocyte_held.yaml";
+  const std::string aspirate = "cd " + directory_ + " && " MICROINJECTION_ASPIRATE " --scene " + scene +
+                               " --pressures=-500,-1000,-1500,-2500 --tolerance 0.02 --csv tongues.csv 2>/dev/null";
+  ASSERT_EQ(std::system(aspirate.c_str()), 0);
+  const Outcome outcome =
+      CommandTest::run("--tongue tongues.csv --scene " + scene + " --csv found.csv --out fitted.yaml");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const std::vector<double> found = modulus("tongue");
+  EXPECT_NEAR(found[0], 17.9e3, 0.01 * 17.9e3);
+  EXPECT_LT(found[1], found[0]);
+  EXPECT_LT(found[0], found[2]);
+  EXPECT_NE(read(directory_ + "fitted.yaml").find("inner_radius"), std::string::npos);
+  for (const auto& [arguments, told] : std::vector<std::pair<std::string, std::string>>{
+           {"--tongue tongues.csv", "--tongue: needs --scene"},
+           {"--tongue tongues.csv --record x.csv --scene " + scene, "one of them must be given"},
+           {"--tongue tongues.csv --prony 1 --scene " + scene, "--prony: must be left out with --tongue"},
+           {"--tongue tongues.csv --scene " + std::string(kCells) + "mouse_oocyte.yaml",
+            "holding_pipette/mouth: is missing"}}) {
+    const Outcome refused = CommandTest::run(arguments);
+    EXPECT_EQ(refused.status, 2) << arguments;
+    EXPECT_NE(refused.err.find(told), std::string::npos) << arguments << '\n' << refused.err;
+  }
+}
+
 TEST_F(IdentifyCommand, ARecordIsFittedByTheSolutionOfASceneThatIsInNoFamily) {
   writeLinear(0.1);
   const std::string scene = std::string(kCells) + "mouse_oocyte_linear.yaml";

@@ -107,7 +107,7 @@ TEST_F(SessionTest, NamesWhatDoesNotGoTogether) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
       {{"cell:=/nowhere.yaml"},
        "cell = /nowhere.yaml: no such file: /nowhere.yaml; must be a path, or a name of "
-       "config/cells: human_oocyte, mouse"},
+       "config/cells: human_oocyte, human_oocyte_held, mouse"},
       {{"injection.mode:=automatic"},
        "injection/mode = automatic with hand/device = virtual_hand: must be manual, or with hand/device = none"},
       {{"hidden:=/nowhere.yaml"}, "hidden = /nowhere.yaml: no such file"},

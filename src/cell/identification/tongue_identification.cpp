@@ -26,8 +26,8 @@ const std::vector<double>& solvedSuctions() {
   return suctions;
 }
 
-constexpr double kLevel = 0.5;         ///< of the mesh; its error is that of the next
-constexpr double kShapeError = 0.004;  ///< of the lengths' rise on that mesh, measured: ./dev bench suction
+constexpr double kLevel = 0;           ///< of the mesh; its error is that of the next
+constexpr double kShapeError = 0.002;  ///< of the lengths' rise on that mesh, measured: ./dev bench suction
 constexpr std::size_t kFewestSamples = 4, kFewestPressures = 3;
 constexpr double kSearched = 1e3;  ///< of the modulus, above the smallest that has all equilibria
 constexpr int kGrid = 200;

@@ -23,7 +23,7 @@ namespace {
 /// Contact stiffness, in units of the stiffest layer's modulus over the tip's radius. At a pressure
 /// equal to that modulus the tip then enters the surface by a thousandth of its radius.
 constexpr double kPenalty = 1000;
-constexpr double kDeepest = 0.03;  ///< largest allowed penetration, over the tip's radius
+constexpr double kDeepest = 0.03;  ///< largest allowed penetration, over the tip's radius or the lip's edge
 
 /// Young's modulus, Pa, of the stiffest layer, unrelaxed.
 double largestModulus(const Scene& scene) {
@@ -225,6 +225,7 @@ void CellProblem<Dim>::addSuction(const Scene& scene, EquilibriumSystem::Terms& 
   holding_pressure_ = mouth.pressure;
   on_axis_ = scene.needle.offset.isZero(0);
   away_ = radius / 4;
+  deepest_into_lip_ = kDeepest * mouth.edge_radius;
 }
 
 template <int Dim>
@@ -237,6 +238,12 @@ LoadPath::Result CellProblem<Dim>::hold(double pressure) {
   }
   result = path_->advance({0, length, away_});
   if (!result.converged) return result;
+  if (lip_->penetration() > deepest_into_lip_) {
+    result.converged = false;
+    result.reason =
+        "the lip enters the surface by more than 3 % of its edge's radius: the contact is too soft for this cell";
+    return result;
+  }
   touch_ = touchHeight();
   return result;
 }

@@ -86,6 +86,7 @@ class CellProblem {
   std::shared_ptr<ProximalAnchor> anchor_;
   double holding_pressure_ = 0;  ///< Pa, that solve() holds the cell by
   double away_ = 0;              ///< m, of the needle while the cell is taken
+  double deepest_into_lip_ = 0;  ///< m, largest allowed penetration
   bool on_axis_ = true;          ///< the needle's line
   std::optional<double> touch_;  ///< m, tip's translation along z at first contact with the held cell; none: not held
   std::unique_ptr<EquilibriumSystem> system_;

@@ -86,6 +86,7 @@ ConvergedForce::ConvergedForce(const Scene& scene, const Indenting& indenting, c
     throw ConfigError("model = axisymmetric: needle/offset and lateral must be 0; use spatial or auto");
   }
   axisymmetric_ = possible && config.model != ConvergedForceConfig::Model::kSpatial;
+  if (!axisymmetric_) scene_.requireGlued("a needle beside the axis, and for model = spatial");
 }
 
 /// A swept mesh can be bent towards the contact point only up to a limit.

@@ -12,8 +12,14 @@
 namespace microinjection {
 namespace {
 
+/// Of a tongue's length, relative, that no finer mesh takes away: an eightfold contact stiffness shortens it by 1
+/// to 2.4 parts in ten thousand.
+constexpr double kMethodError = 2.5e-4;
+
+/// P2-P1: the volume that flows into the bore is the far field's, whose error falls with the second order there, and
+/// with the first of P2-P0 (./dev bench suction: 0.01 % instead of 0.3 %).
 CellProblem<2> problemAt(const Scene& scene, double level) {
-  return CellProblem<2>(scene, makeSceneMesh<2>(scene, level), ElementKind::kP2P0);
+  return CellProblem<2>(scene, makeSceneMesh<2>(scene, level), ElementKind::kP2P1);
 }
 
 void check(const Scene& scene, const std::vector<double>& pressures) {
@@ -61,7 +67,7 @@ std::vector<TonguePoint> convergedTongues(const Scene& scene, const std::vector<
       point.level = level;
       if (before[i]) {
         point.converged = true;
-        point.error_estimate = std::abs(point.held.tongue_length / *before[i] - 1);
+        point.error_estimate = std::abs(point.held.tongue_length / *before[i] - 1) + kMethodError;
       }
       before[i] = point.held.tongue_length;
       done = done && point.error_estimate <= config.tolerance;

@@ -15,7 +15,7 @@ struct TonguePoint {
   bool converged = false;
   std::string reason;  ///< why it did not converge, or why no finer mesh has a solution; else empty
   HeldCell held;       ///< on the finest mesh that has a solution; its pressure is that asked for
-  /// Relative, of the tongue's length, from the last two meshes.
+  /// Relative, of the tongue's length, from the last two meshes and the contact's stiffness.
   double error_estimate = std::numeric_limits<double>::quiet_NaN();
   double level = -1;  ///< of that mesh, see scene_mesh.h
 };
