@@ -131,7 +131,34 @@ TEST(HeldCell, SuctionChangesTheNeedlesForceALittle) {
   }
 }
 
-TEST(HeldCell, InSpaceItIsRefused) {
+/// Half a cell in space, with the needle in the plane y = 0: on the axis as its section, and pushed aside it pushes
+/// back.
+TEST(HeldCell, InAPlaneOfSymmetryItIsThatOfItsSection) {
+  Scene scene = heldScene();
+  Scene::Mouth& mouth = *scene.holding_pipette.mouth;
+  mouth.inner_radius = 14e-6;
+  mouth.outer_radius = 40e-6;
+  mouth.edge_radius = 8e-6;
+  mouth.pressure = -100;
+  mouth.contact.mode = "sticking";
+  scene.holding_pipette.contact_radius = 22e-6;
+  scene.validate();
+  CellProblem<3> space(scene, makeHalfSceneMesh(scene, -1), ElementKind::kP2P0, Symmetry::kMirror);
+  CellProblem<2> section = problemOf(scene, -1);
+  const IndentationSolution in_space = space.solve({0, 0, -3e-6}), in_section = section.solve({0, 0, -3e-6});
+  ASSERT_TRUE(in_space.converged && in_section.converged) << in_space.reason << in_section.reason;
+  EXPECT_NEAR(in_space.force.z(), in_section.force.z(), 0.03 * in_section.force.z());
+  const HeldCell held = space.held(), flat = section.held();
+  EXPECT_NEAR(held.tongue_length, flat.tongue_length, 0.03 * flat.tongue_length);
+  EXPECT_NEAR(held.tongue_volume, flat.tongue_volume, 0.05 * flat.tongue_volume);
+  EXPECT_NEAR(held.clamping_force, flat.clamping_force, 0.03 * flat.clamping_force);
+  const IndentationSolution aside = space.solve({2e-6, 0, -3e-6});
+  ASSERT_TRUE(aside.converged) << aside.reason;
+  EXPECT_LT(aside.force.x(), -0.05 * aside.force.z());
+  EXPECT_EQ(aside.force.y(), 0);
+}
+
+TEST(HeldCell, WithoutSymmetryInSpaceItIsRefused) {
   const Scene scene = heldScene();
   EXPECT_THROW(CellProblem<3>(scene, makeSceneMesh<3>(scene, -1), ElementKind::kP2P0), ConfigError);
 }
