@@ -45,7 +45,7 @@ def held_scene(radius, inner, outer, edge, poisson_ratio, modulus=MODULUS, model
 
 def half_space():
     """Phi, by how the tongue grows between two suctions, for mouths of other sizes on one cell."""
-    for inner in (1.0, 2.0, 4.0):
+    for inner in (2.0, 4.0, 8.0):
         begin = time.perf_counter()
         scene = held_scene(400, inner, 2 * inner, 0.02 * inner, 0.499, model='linear')
         drawn = aspirate(scene, [-0.02 * MODULUS, -0.04 * MODULUS], tolerance=0.02)
