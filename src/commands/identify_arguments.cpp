@@ -116,7 +116,7 @@ void requireFitTongue(const IdentifyArguments& arguments, const boost::program_o
   if (arguments.scene.empty()) throw ConfigError("--tongue: needs --scene, which has the mouth");
   for (const auto& [name, value] : values) {
     const bool used = name == "tongue" || name == "scene" || name == "out" || name == "csv" || name == "column";
-    if (!value.defaulted() && !used && !value.empty() && !(name == "whole" || name == "no-intervals"))
+    if (!value.defaulted() && !used && !value.empty())
       throw ConfigError("--" + name + ": must be left out with --tongue");
   }
 }

@@ -19,6 +19,7 @@ constexpr double kBoundOverMedian = 2.9;            ///< 95 % over the median si
 
 void requireProportional(const Scene& scene) {
   scene.requireContinuum("--model solution");
+  scene.requireGlued("--model solution, whose force has to be proportional to the modulus");
   const bool tension = std::any_of(scene.cell.layers.begin(), scene.cell.layers.end(),
                                    [](const Scene::Layer& layer) { return layer.surface_tension != 0; });
   if (tension || scene.needle.contact.adhesion_energy > 0) {

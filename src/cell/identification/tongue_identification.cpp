@@ -26,9 +26,9 @@ const std::vector<double>& solvedSuctions() {
   return suctions;
 }
 
-constexpr double kLevel = 0;           ///< of the mesh; its error is that of the next
+constexpr double kLevel = 0;           ///< of the mesh, see scene_mesh.h
 constexpr double kShapeError = 0.002;  ///< of the lengths' rise on that mesh, measured: ./dev bench suction
-constexpr std::size_t kFewestSamples = 4, kFewestPressures = 3;
+constexpr std::size_t kFewestSamples = 4, kFewestPressures = 3, kFewestTested = 6;
 constexpr double kSearched = 1e3;  ///< of the modulus, above the smallest that has all equilibria
 constexpr int kGrid = 200;
 
@@ -107,6 +107,14 @@ TongueRecord readTongueRecord(const std::string& path, const std::map<std::strin
 }
 
 TongueShape::TongueShape(const Scene& scene) : error_(kShapeError) {
+  for (const Scene::Layer& layer : scene.cell.layers) {
+    if (layer.surface_tension > 0)
+      throw ConfigError("surface_tension of layer " + layer.name +
+                        ": must be 0: a modulus that is searched does not scale it");
+  }
+  if (scene.holding_pipette.mouth && scene.holding_pipette.mouth->contact.adhesion_energy > 0)
+    throw ConfigError(
+        "holding_pipette/mouth/contact/adhesion: must be left out: a modulus that is searched does not scale it");
   const std::vector<double> lengths = tongueCurve(scene, solvedSuctions(), kLevel);
   const auto count = static_cast<Eigen::Index>(lengths.size());
   if (count < 4) throw ConfigError("the cell has no equilibrium under any suction in the scene's mouth");
@@ -168,18 +176,23 @@ Identification identifyTongue(const TongueRecord& record, const Scene& scene, co
   std::snprintf(text, sizeof(text), "the scene's cell in its section, held by suction; %.0f tongues, noise %.3g um",
                 count, 1e6 * noise);
   result.model = text;
-  const double spread = 1.96 * noise / std::sqrt(count);
-  result.estimates = {{"young_modulus", "Pa", std::exp(found), std::exp(low) * (1 - by_shape),
-                       std::exp(high) * (1 + by_shape), bounded_below && bounded_above},
-                      {"offset", "m", misfit.offset, misfit.offset - spread, misfit.offset + spread, true}};
+  // The offset goes with the modulus: over the modulus' interval, with its own noise.
+  const double spread = std::sqrt(f / count) * noise;
+  const double at_low = misfitOf(record, scene.radius(), shape, std::exp(low)).offset,
+               at_high = misfitOf(record, scene.radius(), shape, std::exp(high)).offset;
+  result.estimates = {
+      {"young_modulus", "Pa", std::exp(found), std::exp(low) * (1 - by_shape), std::exp(high) * (1 + by_shape),
+       bounded_below && bounded_above},
+      {"offset", "m", misfit.offset, std::min(at_low, at_high) - spread, std::max(at_low, at_high) + spread, true}};
   result.noise = noise;
   result.independent = count;
   result.size = *longest - *shortest;
   result.misfit = std::sqrt(misfit.cost / count);
   result.scatter = scatterOf(record, misfit.residuals);
   if (!bounded_below)
-    result.warnings.emplace_back(
-        "a softer cell has no equilibrium under the strongest suction: the interval ends there");
+    result.warnings.emplace_back("of a softer cell the strongest suction is not solved: the interval ends there");
+  if (record.length.size() < kFewestTested)
+    result.warnings.emplace_back("fewer than 6 tongues: whether the cell follows the record is not tested");
   return result;
 }
 

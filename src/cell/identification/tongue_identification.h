@@ -40,7 +40,6 @@ class TongueShape {
   double length(double suction) const;
 
  private:
-  void fit();
   Eigen::VectorXd suctions_, lengths_, curvature_;
   double error_ = 0;
 };

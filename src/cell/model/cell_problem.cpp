@@ -230,13 +230,10 @@ void CellProblem<Dim>::addSuction(const Scene& scene, EquilibriumSystem::Terms& 
 
 template <int Dim>
 LoadPath::Result CellProblem<Dim>::hold(double pressure) {
-  const double length = pressure / suction_->unit();
-  LoadPath::Result result;
-  if (!touch_) {
-    result = path_->advance({0, 0, away_});
-    if (!result.converged) return result;
-  }
-  result = path_->advance({0, length, away_});
+  touch_.reset();
+  holding_pressure_ = pressure;
+  LoadPath::Result result = path_->advance({0, path_->translation()[kPressure], away_});
+  if (result.converged) result = path_->advance({0, pressure / suction_->unit(), away_});
   if (!result.converged) return result;
   if (lip_->penetration() > deepest_into_lip_) {
     result.converged = false;
@@ -322,10 +319,19 @@ IndentationSolution CellProblem<Dim>::solve(const Eigen::Vector3d& tip_displacem
   const double start = threadCpuTime();
   Eigen::Vector3d target = tip_displacement;
   LoadPath::Result result;
-  if (suction_ && !touch_) result = hold(holding_pressure_);
-  if (!suction_ || touch_) {
-    if (suction_) target += Eigen::Vector3d(0, holding_pressure_ / suction_->unit(), *touch_);
+  bool ready = !suction_ || touch_;
+  if (!ready) {  // the way to the cell takes no time
+    result = hold(holding_pressure_);
+    if (touch_) result = path_->advance({0, path_->translation()[kPressure], *touch_});
+    ready = result.converged;
+  }
+  if (ready) {
+    if (suction_) target += Eigen::Vector3d(0, path_->translation()[kPressure], *touch_);
     result = path_->advance(target, duration);
+  }
+  if (result.converged && holding_pressure_ < 0 && lip_->ring(path_->state()).radius == 0) {
+    result.converged = false;
+    result.reason = "the lip lets go of the cell";
   }
   IndentationSolution solution;
   solution.converged = result.converged;

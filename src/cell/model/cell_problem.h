@@ -26,10 +26,10 @@ enum class Symmetry { kNone, kMirror };
 
 /// A cell that suction holds, in equilibrium.
 struct HeldCell {
-  double pressure = 0;        ///< Pa, gauge, in the bore
-  double tongue_length = 0;   ///< m, from the plane of the lip's crest to the surface's furthest point in the bore
-  double tongue_volume = 0;   ///< m^3, of the cell behind that plane, in the bore
-  double seal_radius = 0;     ///< m, of the circle on which the surface is pressed against the lip, in the mean
+  double pressure = 0;       ///< Pa, gauge, in the bore
+  double tongue_length = 0;  ///< m, from the plane of the lip's crest to the surface's furthest point in the bore
+  double tongue_volume = 0;  ///< m^3, of the cell behind that plane, in the bore
+  double seal_radius = 0;    ///< m, of the circle within the contact with the lip at which the pressure is taken to end
   double clamping_force = 0;  ///< N, of the lip on the cell, along the axis; suction and needle balance it
   Eigen::Matrix2Xd outline;   ///< m, (r, z) of the deformed surface, from the pole in the mouth to the other one
   double imbalance = 0;       ///< N, along the axis, that the solution has not balanced

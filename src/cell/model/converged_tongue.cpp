@@ -63,6 +63,7 @@ std::vector<TonguePoint> convergedTongues(const Scene& scene, const std::vector<
         break;
       }
       ++solved;
+      point.reason.clear();
       point.held = problem.held();
       point.level = level;
       if (before[i]) {

@@ -53,14 +53,17 @@ TEST(TongueIdentification, FindsTheModulusWhereverTheLengthsBegin) {
 
 TEST(TongueIdentification, TheIntervalHoldsTheTruthNineteenTimesOfTwenty) {
   const Scene scene = loadScene(kHeld);
-  int covered = 0;
+  int covered = 0, of_offset = 0;
   const int trials = 400;
   for (int i = 0; i < trials; ++i) {
     const Identification found = identifyTongue(record(17.9e3, 1e-6, 0.1e-6, i), scene, shape());
     const Estimate& modulus = *found.find("young_modulus");
     covered += modulus.low <= 17.9e3 && 17.9e3 <= modulus.high;
+    const Estimate& offset = *found.find("offset");
+    of_offset += offset.low <= 1e-6 && 1e-6 <= offset.high;
   }
   EXPECT_GE(covered, 0.92 * trials);
+  EXPECT_GE(of_offset, 0.92 * trials);
 }
 
 TEST(TongueIdentification, AnotherCurveIsNotFollowed) {

@@ -131,6 +131,17 @@ TEST(HeldCell, SuctionChangesTheNeedlesForceALittle) {
   }
 }
 
+/// The needle's way to the cell takes no time: a relaxing cell has the same force with and without a stop at the touch.
+TEST(HeldCell, TimeBeginsAtTheTouch) {
+  Scene scene = heldScene();
+  scene.cell.material().viscoelasticity.prony = {{2, 0.5}};
+  CellProblem<2> at_once = problemOf(scene), with_a_stop = problemOf(scene);
+  ASSERT_TRUE(with_a_stop.solve(Eigen::Vector3d::Zero()).converged);
+  const IndentationSolution one = at_once.solve({0, 0, -2e-6}, 1), other = with_a_stop.solve({0, 0, -2e-6}, 1);
+  ASSERT_TRUE(one.converged && other.converged) << one.reason << other.reason;
+  EXPECT_NEAR(one.force.z(), other.force.z(), 0.01 * other.force.z());
+}
+
 /// Half a cell in space, with the needle in the plane y = 0: on the axis as its section, and pushed aside it pushes
 /// back.
 TEST(HeldCell, InAPlaneOfSymmetryItIsThatOfItsSection) {
