@@ -27,7 +27,7 @@ const std::vector<double>& solvedSuctions() {
 }
 
 constexpr double kLevel = 0;           ///< of the mesh, see scene_mesh.h
-constexpr double kShapeError = 0.002;  ///< of the lengths' rise on that mesh, measured: ./dev bench suction
+constexpr double kShapeError = 0.002;  ///< of the lengths' rise on that mesh; assumed
 constexpr std::size_t kFewestSamples = 4, kFewestPressures = 3, kFewestTested = 6;
 constexpr double kSearched = 1e3;  ///< of the modulus, above the smallest that has all equilibria
 constexpr int kGrid = 200;

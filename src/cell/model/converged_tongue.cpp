@@ -17,7 +17,7 @@ namespace {
 constexpr double kMethodError = 2.5e-4;
 
 /// P2-P1: the volume that flows into the bore is the far field's, whose error falls with the second order there, and
-/// with the first of P2-P0 (./dev bench suction: 0.01 % instead of 0.3 %).
+/// with the first of P2-P0.
 CellProblem<2> problemAt(const Scene& scene, double level) {
   return CellProblem<2>(scene, makeSceneMesh<2>(scene, level), ElementKind::kP2P1);
 }
