@@ -81,11 +81,30 @@ class CellModel {
     double smallest_jacobian = 1;
   };
 
+  /// The pressure behind a needle's bore.
+  struct BoreLine {
+    /// Pa, by which the pressure behind the liquid is below that at which nothing flows; below 0: the needle injects.
+    double suction = 0;
+    double resistance = 1e15;  ///< Pa s/m^3, > 0, of the needle to its liquid
+  };
+  /// What the suction in a needle's bore has drawn in.
+  struct Bore {
+    double suction = 0;  ///< Pa, that the cell at the mouth withstands
+    double length = 0;   ///< m, of the cell in the bore, from its mouth
+    double volume = 0;   ///< m^3, same
+    double flow = 0;     ///< m^3/s, into the bore
+    double tension = 0;  ///< N/m, of an intact membrane over the mouth
+  };
+
   virtual ~CellModel() = default;
 
   /// Force for the tip at `tip` (m) with the pipette along `axis` (unit, out of the cell) at `time` (s, increasing).
   /// A pose that is not finite, or that the model cannot serve, gives an invalid force.
   virtual TipForce step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time) = 0;
+
+  /// The pressure in the needle's bore from the next step on. Models of needles without a bore do not feel it.
+  virtual void setBoreLine(const BoreLine& /*line*/) {}
+  virtual const Bore* bore() const { return nullptr; }  ///< at the last step; null: the needle has no bore
 
   /// Removes the contact after a membrane has failed. The next step() finds a new one.
   virtual void release() = 0;

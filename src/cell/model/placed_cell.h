@@ -29,6 +29,8 @@ class PlacedCell : public CellModel {
     contact_.reset();
   }
 
+  void setBoreLine(const BoreLine& line) override { cell_.setBoreLine(line); }
+  const Bore* bore() const override { return cell_.bore(); }
   const std::optional<Contact>& contact() const override { return contact_; }
   std::optional<double> radius() const override { return cell_.radius(); }
   Insertion insertion() const override { return cell_.insertion(); }

@@ -63,6 +63,10 @@ void checkPuncture(const PunctureConfig& puncture, PlausibleCheck& check) {
     check.requireGiven(plausible::kLength, at + "dimple_radius", layer.dimple_radius);
     check.requireGiven(plausible::kStiffness, at + "stiffness", layer.stiffness);
     check.requireGiven(plausible::kLength, at + "gap", layer.gap);
+    if (!layer.aspiration) continue;
+    check.require(plausible::kTension, at + "aspiration/tension", layer.aspiration->tension);
+    check.require(plausible::kTension, at + "aspiration/tension_scale", layer.aspiration->tension_scale);
+    check.require(plausible::kRelaxationTime, at + "aspiration/tension_time", layer.aspiration->tension_time);
   }
   check.require(plausible::kFriction, shaft + "friction", puncture.shaft.friction);
   check.requireGiven(plausible::kStiffness, shaft + "adhesion", puncture.shaft.adhesion);
@@ -70,6 +74,8 @@ void checkPuncture(const PunctureConfig& puncture, PlausibleCheck& check) {
   check.require(plausible::kViscosity, shaft + "damping", puncture.shaft.damping);
   check.requireGiven(plausible::kStiffness, shaft + "lateral_stiffness", puncture.shaft.lateral_stiffness);
   check.requireGiven(plausible::kRelaxationTime, path + "relaxation_time", puncture.relaxation_time);
+  check.require(plausible::kViscosity, path + "cytoplasm_viscosity", puncture.cytoplasm_viscosity);
+  check.requireGiven(plausible::kRelaxationTime, path + "resealing_time", puncture.resealing_time);
 }
 
 void checkCell(const Scene::Cell& cell, PlausibleCheck& check) {
@@ -109,6 +115,7 @@ void checkPlausible(const Scene& scene) {
   const Scene::Needle& needle = scene.needle;
   check.require(plausible::kTipRadius, "needle/tip/radius", needle.tip.radius);
   check.requireGiven(plausible::kTipRadius, "needle/tip/edge_radius", needle.tip.edge_radius);
+  if (needle.bore_radius) check.require(plausible::kTipRadius, "needle/bore_radius", *needle.bore_radius);
   check.require(plausible::kAdhesionEnergy, "needle/contact/adhesion/energy", needle.contact.adhesion_energy);
   check.requireGiven(plausible::kAdhesionRange, "needle/contact/adhesion/range", needle.contact.adhesion_range);
   for (const double offset : needle.offset) check.require(plausible::kDistance, "needle/offset", offset);

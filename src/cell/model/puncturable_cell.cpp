@@ -7,7 +7,18 @@
 
 namespace microinjection {
 
-PuncturableCell::PuncturableCell(const Scene& scene, std::unique_ptr<CellModel> cell)
+namespace {
+
+/// Of the material that a needle draws in: behind the membranes, the innermost layer.
+BoreSuction::Config boreConfig(const Scene& scene) {
+  const std::vector<Scene::Layer>& layers = scene.cell.layers;
+  return {scene.needle.bore_radius.value_or(0), scene.radius(), layers.back().material.young_modulus,
+          scene.cell.puncture.cytoplasm_viscosity};
+}
+
+}  // namespace
+
+PuncturableCell::PuncturableCell(const Scene& scene, std::unique_ptr<CellModel> cell, std::optional<BoreTongue> tongue)
     : config_(scene.cell.puncture),
       tip_(scene.needle.tip),
       radius_(scene.radius()),
@@ -15,6 +26,7 @@ PuncturableCell::PuncturableCell(const Scene& scene, std::unique_ptr<CellModel> 
       shaft_(config_.shaft),
       fading_(config_.relaxation_time) {
   invalid_reason_.reserve(200);
+  if (tongue) bore_.emplace(boreConfig(scene), std::move(*tongue));
 }
 
 TipForce PuncturableCell::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time) {
@@ -25,12 +37,42 @@ TipForce PuncturableCell::step(const Eigen::Vector3d& tip, const Eigen::Vector3d
     return {false, Eigen::Vector3d::Zero()};
   }
   const Pose pose{tip, axis, time, last_time_ ? std::max(time - *last_time_, 0.0) : 0};
+  stepBore(pose);
   const TipForce result = computeForce(pose);
   work_ = workTo(result.force, tip);
   last_force_ = result.force;
   last_tip_ = tip;
   last_time_ = time;
   return result;
+}
+
+/// What has come before the mouth in the last step is drawn in.
+void PuncturableCell::stepBore(const Pose& pose) {
+  drawn_through_ = false;
+  if (!bore_) return;
+  const bool through = covering_ == layerCount();
+  bore_->step(line_,
+              covering_ < 0 ? BoreSuction::Cover::kMedium
+              : through     ? BoreSuction::Cover::kCytoplasm
+                            : BoreSuction::Cover::kMembrane,
+              pose.duration);
+  drawn_through_ = membrane_ && membrane_->step(bore_->reading().tension, pose.duration);
+}
+
+/// `layer`: that the tip presses; the count of layers behind the last; -1: none.
+void PuncturableCell::coverBore(int layer) {
+  if (layer == covering_) return;
+  covering_ = layer;
+  membrane_.reset();
+  const bool breakable = bore_ && layer >= 0 && layer < layerCount() && config_.layers[layer].aspiration;
+  if (breakable) membrane_.emplace(*config_.layers[layer].aspiration);
+}
+
+/// The needle touches the outermost layer at `point`.
+void PuncturableCell::touch(const Eigen::Vector3d& point, const Pose& pose) {
+  work_ = 0;
+  resealed_ = holes_.under(point, pose.axis, tip_.radius);
+  strength_ = resealed_ ? -std::expm1(-(pose.time - *holes_[*resealed_].left) / config_.resealing_time) : 1;
 }
 
 double PuncturableCell::workTo(const Eigen::Vector3d& force, const Eigen::Vector3d& tip) const {
@@ -40,8 +82,9 @@ double PuncturableCell::workTo(const Eigen::Vector3d& force, const Eigen::Vector
 TipForce PuncturableCell::computeForce(const Pose& pose) {
   if (!hole_ && !cell_->contact()) {
     const auto hole = holes_.under(pose.tip, pose.axis, tip_.radius);
-    if (hole && isOut(*hole, pose)) return {true, fading_.at(pose.tip, pose.time)};
-    if (hole) {
+    const bool open = hole && !holes_[*hole].left;
+    if (open && isOut(*hole, pose)) return {true, fading_.at(pose.tip, pose.time)};
+    if (open) {
       work_ = 0;
       enter(*hole, pose);
     }
@@ -61,15 +104,18 @@ TipForce PuncturableCell::contactForce(const Pose& pose) {
   followRadius();
   if (!result.valid) return result;
   const auto& contact = cell_->contact();
-  if (!was_in_contact && contact) work_ = 0;
-  const double push = result.force.dot(pose.axis);
-  const bool failed =
-      contact && !config_.layers.empty() && config_.layers.front().fails(push, contact->indentation, tip_.radius);
-  if (failed && push > config_.layers.front().force) result.force *= config_.layers.front().force / push;
+  if (!was_in_contact && contact) touch(contact->contact_point, pose);
+  coverBore(contact && !config_.layers.empty() ? 0 : -1);
+  const double push = result.force.dot(pose.axis), left = strength_ * strength();
+  const bool failed = contact && !config_.layers.empty() &&
+                      (drawn_through_ || config_.layers.front().fails(push, contact->indentation, tip_.radius, left));
+  if (failed && push > left * config_.layers.front().force) result.force *= left * config_.layers.front().force / push;
   result.force += fading_.at(pose.tip, pose.time);
   if (!failed) return result;
   fading_.start(result.force, pose.tip, workTo(result.force, pose.tip), pose.time);
-  const int hole = holes_.add({contact->contact_point, 0});
+  const PunctureHoles::Hole opened = {contact->contact_point, 0, {}};
+  const int hole = resealed_ ? *resealed_ : holes_.add(opened);
+  holes_[hole] = opened;
   published_holes_.write(holes_);
   cell_->release();
   inner_force_used_ = false;
@@ -92,11 +138,16 @@ Eigen::Vector3d PuncturableCell::forceInside(const Pose& pose) {
   const double length = isThrough() ? (insertion_.depth - next_layer_depth_) * -std::expm1(-std::max(age, 0.0)) : 0;
   const Eigen::Vector3d shaft = shaft_.step(pose.tip, pose.axis, length, pose.duration);
   Eigen::Vector3d others = fading_.at(pose.tip, pose.time);
-  if (isThrough()) return others + shaft;
+  if (isThrough()) {
+    coverBore(layerCount());
+    return others + shaft;
+  }
   const Layer& layer = config_.layers[holes_[*hole_].layers];
   const double pushed = std::max(insertion_.depth - next_layer_depth_, 0.0), push = layer.stiffness * pushed;
-  others += std::min(push, layer.force) * pose.axis;
-  if (layer.fails(push, pushed, tip_.radius)) {
+  coverBore(pushed > 0 ? holes_[*hole_].layers : -1);
+  const double left = strength_ * strength();
+  others += std::min(push, left * layer.force) * pose.axis;
+  if (drawn_through_ || layer.fails(push, pushed, tip_.radius, left)) {
     fading_.start(others, pose.tip, workTo(others + shaft, pose.tip), pose.time);
     failLayer(pose);
   }
@@ -116,7 +167,10 @@ void PuncturableCell::enter(int hole, const Pose& pose) {
 
 void PuncturableCell::leave(const Pose& pose) {
   fading_.start(last_force_, pose.tip, workTo(last_force_, pose.tip), pose.time);
+  if (std::isfinite(config_.resealing_time)) holes_[*hole_].left = pose.time;
   hole_.reset();
+  coverBore(-1);
+  strength_ = 1;
   in_contact_.reset();
   insertion_.inside = false;
   insertion_.depth = 0;
@@ -149,6 +203,7 @@ double PuncturableCell::clearance(const Eigen::Vector3d& tip, const Eigen::Vecto
 void PuncturableCell::release() {
   cell_->release();
   hole_.reset();
+  coverBore(-1);
   in_contact_.reset();
   insertion_.inside = false;
   insertion_.depth = 0;

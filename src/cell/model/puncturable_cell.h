@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "base/latest_value.h"
+#include "cell/model/aspirated_membrane.h"
+#include "cell/model/bore_suction.h"
 #include "cell/model/cell_model.h"
 #include "cell/model/fading_force.h"
 #include "cell/model/puncture_holes.h"
@@ -41,16 +43,25 @@ namespace microinjection {
 /// needle line that passes within the tip's radius of a hole meets the next intact layer there;
 /// elsewhere the cell is intact.
 ///
+/// A needle with a bore draws the layer before its mouth in (BoreSuction), which then fails by its tension as its
+/// aspiration says (AspiratedMembrane); behind the last layer the cytoplasm flows. A tongue of a bore is too small to
+/// change the force on the needle. A hole that the needle has left reseals, if the scene says so: the cell is then
+/// touched there as elsewhere, and its layers fail at a share of their limits that grows with the hole's age.
+///
 /// A lost force fades (FadingForce) from its value in that step, so that the needle feels no step.
 /// It returns at most the work of the needle since first contact. The remaining forces are passive.
 class PuncturableCell : public CellModel {
  public:
   /// `cell`: the model of the same scene's cell without a puncture. @pre scene.validate() does not throw
-  PuncturableCell(const Scene& scene, std::unique_ptr<CellModel> cell);
+  /// `tongue`: of a scene whose needle has a bore, see solveBoreTongue(). Without it nothing is drawn in.
+  PuncturableCell(const Scene& scene, std::unique_ptr<CellModel> cell, std::optional<BoreTongue> tongue = {});
 
   /// O(1), apart from the inner cell; does not allocate or lock.
   TipForce step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time) override;
   void release() override;
+
+  void setBoreLine(const BoreLine& line) override { line_ = line; }
+  const Bore* bore() const override { return bore_ ? &bore_->reading() : nullptr; }
 
   /// In the cell: since first contact or, in an existing hole, since the tip passed the surface.
   const std::optional<Contact>& contact() const override { return hole_ ? in_contact_ : cell_->contact(); }
@@ -71,6 +82,8 @@ class PuncturableCell : public CellModel {
   };
 
   TipForce computeForce(const Pose& pose);
+  void stepBore(const Pose& pose);
+  void coverBore(int layer);
   TipForce contactForce(const Pose& pose);
   void followRadius();  ///< moves the holes with a surface whose radius has changed
   Eigen::Vector3d forceInside(const Pose& pose);
@@ -78,6 +91,8 @@ class PuncturableCell : public CellModel {
   void leave(const Pose& pose);
   void failLayer(const Pose& pose);
   void updateDepth(const Pose& pose);
+  void touch(const Eigen::Vector3d& point, const Pose& pose);
+  double strength() const { return membrane_ ? membrane_->strength() : 1; }  ///< left by suction, of the limits
   int layerCount() const { return static_cast<int>(config_.layers.size()); }
   bool isThrough() const { return holes_[*hole_].layers == layerCount(); }  ///< all layers have failed in the hole
   /// Whether the tip is off the cell at rest, relative to the hole's position on its surface.
@@ -100,7 +115,14 @@ class PuncturableCell : public CellModel {
   double next_layer_depth_ = 0;    ///< m below the surface, of the next layer; after all have failed, of the last
   double failed_at_ = 0;           ///< s, of the last failure in this hole; negative infinity before
   bool inner_force_used_ = false;  ///< the last force was computed by the inner cell
-  double work_ = 0;                ///< J, see workTo()
+  BoreLine line_;
+  std::optional<BoreSuction> bore_;
+  std::optional<AspiratedMembrane> membrane_;  ///< of the layer before the mouth that suction can break
+  int covering_ = -1;                          ///< that layer; the count of layers: cytoplasm; -1: none
+  bool drawn_through_ = false;                 ///< the membrane has broken by suction in this step
+  std::optional<int> resealed_;                ///< hole that has closed where the needle touches
+  double strength_ = 1;                        ///< share of the limits that this hole has regained
+  double work_ = 0;                            ///< J, see workTo()
   Eigen::Vector3d last_force_ = Eigen::Vector3d::Zero(), last_tip_ = Eigen::Vector3d::Zero();
   std::optional<double> last_time_;  ///< s
   Insertion insertion_;

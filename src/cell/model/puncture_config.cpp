@@ -25,6 +25,7 @@ void readLayer(ConfigReader reader, bool outermost, PunctureConfig::Layer& layer
       reader.error(key, "must be left out: the outermost layer is the cell that the needle touches");
     }
   }
+  if (reader.has("aspiration")) layer.aspiration = AspirationConfig::read(reader.section("aspiration"));
   if (outermost) return;
   readQuantity(reader, "stiffness", layer.stiffness, Range::positive(), "N/m", ConfigReader::kRequired);
   readQuantity(reader, "gap", layer.gap, Range::nonNegative(), "m");
@@ -56,9 +57,9 @@ double PunctureConfig::Layer::strainAt(double indentation, double tip_radius) co
   return std::hypot(1, indentation / (dimple_radius - tip_radius)) - 1;
 }
 
-bool PunctureConfig::Layer::fails(double push, double indentation, double tip_radius) const {
-  return push >= force || indentation >= depth ||
-         (std::isfinite(strain) && strainAt(indentation, tip_radius) >= strain);
+bool PunctureConfig::Layer::fails(double push, double indentation, double tip_radius, double strength) const {
+  return push >= strength * force || indentation >= strength * depth ||
+         (std::isfinite(strain) && strainAt(indentation, tip_radius) >= strength * strain);
 }
 
 PunctureConfig PunctureConfig::atForce(double force) {
@@ -80,6 +81,8 @@ void PunctureConfig::read(ConfigReader reader) {
   }
   readShaft(reader.section("shaft"), shaft);
   readQuantity(reader, "relaxation_time", relaxation_time, Range::positive(), "s");
+  readQuantity(reader, "cytoplasm_viscosity", cytoplasm_viscosity, Range::positive(), "Pa s");
+  readQuantity(reader, "resealing_time", resealing_time, Range::positive(), "s");
 }
 
 void PunctureConfig::check(double tip_radius, ConfigErrors& errors) const {
@@ -90,6 +93,7 @@ void PunctureConfig::check(double tip_radius, ConfigErrors& errors) const {
     errors.require(!layers[i].name.empty() && names.insert(layers[i].name).second, at + "name", layers[i].name, "",
                    "a name that no other layer has");
     checkMembrane(layers[i], at, i == 0, tip_radius, errors);
+    if (layers[i].aspiration) layers[i].aspiration->check(at + "aspiration/", errors);
   }
   errors.require(Range::nonNegative(), path + "shaft/friction", shaft.friction, " N");
   errors.require(Range::nonNegative(), path + "shaft/adhesion", shaft.adhesion, " N/m");
@@ -97,6 +101,8 @@ void PunctureConfig::check(double tip_radius, ConfigErrors& errors) const {
   errors.require(Range::nonNegative(), path + "shaft/lateral_stiffness", shaft.lateral_stiffness, " N/m");
   errors.require(Range::positive(), path + "shaft/stiffness", shaft.stiffness, " N/m");
   errors.require(Range::positive(), path + "relaxation_time", relaxation_time, " s");
+  errors.require(Range::positive(), path + "cytoplasm_viscosity", cytoplasm_viscosity, " Pa s");
+  errors.require(resealing_time > 0, path + "resealing_time", resealing_time, " s", "positive (s)");
 }
 
 }  // namespace microinjection

@@ -7,6 +7,7 @@
 
 #include "base/config_errors.h"
 #include "base/config_reader.h"
+#include "cell/model/aspirated_membrane.h"
 
 namespace microinjection {
 
@@ -22,6 +23,8 @@ struct PunctureConfig {
     double dimple_radius = 0;  ///< m, with strain: outer radius of the dent, from the pipette's axis
     double stiffness = 0;      ///< N/m along the pipette; 0 for the outermost layer, whose force is the cell's
     double gap = 0;            ///< m ahead of the tip when the previous layer fails; 0 for the outermost layer
+    /// How suction in the needle's bore breaks it; none: it does not, only the limits above count.
+    std::optional<AspirationConfig> aspiration;
 
     /// Meridional strain of a membrane that is straight from the rim of a tip of `tip_radius` c, m,
     /// at `indentation` w, m, to the outer radius of the dent: sqrt((a - c)^2 + w^2) / (a - c) - 1.
@@ -30,8 +33,8 @@ struct PunctureConfig {
     /// nominal, not that of the solid underneath.
     double strainAt(double indentation, double tip_radius) const;
     /// Whether the layer fails at this `indentation`, m, with the force `push` along the
-    /// pipette, N.
-    bool fails(double push, double indentation, double tip_radius) const;
+    /// pipette, N, when its limits are this share of those above.
+    bool fails(double push, double indentation, double tip_radius, double strength = 1) const;
   };
   /// Forces on the part of the pipette in the cell.
   struct Shaft {
@@ -44,7 +47,10 @@ struct PunctureConfig {
 
   std::vector<Layer> layers;  ///< outermost first; none: the cell cannot be punctured
   Shaft shaft;
-  double relaxation_time = 2e-3;  ///< s, in which the force after a failure falls to 1/e
+  double relaxation_time = 2e-3;     ///< s, in which the force after a failure falls to 1/e
+  double cytoplasm_viscosity = 0.2;  ///< Pa s, of what flows into an aspirating needle; illustrative
+  /// s, in which a hole that the needle has left regains all but 1/e of its layers' limits; infinite: it stays open.
+  double resealing_time = std::numeric_limits<double>::infinity();
 
   /// One layer, which fails at `force`, N.
   static PunctureConfig atForce(double force);

@@ -13,9 +13,10 @@ class PunctureHoles {
   struct Hole {
     Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m, of the tip at first contact
     int layers = 0;                                      ///< number of failed layers there, outermost first
+    std::optional<double> left;                          ///< s, when the needle left it; none: the needle is in it
   };
 
-  /// Returns the hole's index, valid until the next add().
+  /// Returns the hole's index, valid until 64 others have been added.
   int add(const Hole& hole) {
     const int index = made_ % kMost;
     holes_[index] = hole;

@@ -94,6 +94,8 @@ struct Scene {
   };
   struct Needle {
     Tip tip;
+    /// m, inner, at the mouth; none: nothing can be drawn in. It does not change the force on the tip.
+    std::optional<double> bore_radius;
     Contact contact;
     Eigen::Vector2d offset = Eigen::Vector2d::Zero();  ///< m, (x, y) of the needle's line
   };

@@ -15,6 +15,7 @@ constexpr double kRounding = 1e-9;  // relative
 /// too steep for a good mesh.
 constexpr double kSharpest = 0.05;  // radius of the rounded edge, over the tip's radius
 constexpr double kReach = 0.95;
+constexpr double kWidestBore = 0.95;  // over the tip's radius
 
 constexpr double kThinnestLayer = 1.0 / 500;  // over the cell's radius
 
@@ -130,6 +131,10 @@ void checkNeedle(const Scene::Needle& needle, double cell_radius, ConfigErrors& 
   const std::string& mode = needle.contact.mode;
   errors.require(mode == "sticking" || mode == "sliding", "needle/contact/mode", mode, "", "one of: sticking, sliding");
   errors.require(mode != "sliding" || needle.tip.rounded(), "needle/contact/mode", mode, "", kDiscSticks);
+  const double widest = kWidestBore * needle.tip.radius;
+  if (needle.bore_radius)
+    errors.require(Range{0, widest, true, false}.contains(*needle.bore_radius), "needle/bore_radius",
+                   *needle.bore_radius, " m", "above 0 and at most 0.95 of the tip's radius, " + metres(widest));
   errors.require(Range::nonNegative(), "needle/contact/friction", needle.contact.friction);
   errors.require(mode == "sliding" || needle.contact.friction == 0, "needle/contact/friction", needle.contact.friction,
                  "", "left out: it belongs to mode sliding only");
