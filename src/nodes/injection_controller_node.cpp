@@ -14,8 +14,9 @@ namespace microinjection {
 namespace {
 
 constexpr char kControllerCommandTopic[] = "controller/state_command";
-constexpr double kNeedleRests = 0.5e-6;  ///< m beyond the rig's resolution, within which a set-point is no motion
-constexpr double kNeedleStands = 0.2;    ///< s beyond the rig's times, for which its pose may stay in a motion
+constexpr double kInterfaceTimeout = 0.2;  ///< s, of images at 10 Hz and more
+constexpr double kNeedleRests = 0.5e-6;    ///< m beyond the rig's resolution, within which a set-point is no motion
+constexpr double kNeedleStands = 0.2;      ///< s beyond the rig's times, for which its pose may stay in a motion
 
 /// Commands that stop or withdraw the needle are executed with any stamp.
 bool stopsOrWithdraws(const std::string& command) {
@@ -32,10 +33,11 @@ const char* const InjectionControllerNode::kHelp =
     "injection_controller: controls the needle and holds it when an input is invalid.\n"
     "In: /teleop/servo_cp /needle/measured_cp /needle/setpoint_cp, /cell/predicted_cf or /force_sensor/measured_cf, "
     "/injector/state,\n"
-    "/needle/abilities, /needle/operating_state, /needle/loop_state, /cell/estimate, /controller/state_command "
+    "/needle/interface, /needle/abilities, /needle/operating_state, /needle/loop_state, /cell/estimate, "
+    "/controller/state_command "
     "(enable, disable, pause, resume, home, unhome, "
     "approach, indent,\n"
-    "inject, withdraw). Action: /controller/inject. Out: /needle/servo_cp /controller/operating_state\n"
+    "aspirate, inject, withdraw). Action: /controller/inject. Out: /needle/servo_cp /controller/operating_state\n"
     "/controller/injection_state /injector/pulse /injector/stop.\n";
 
 InjectionControllerNode::Parameters InjectionControllerNode::Parameters::read(const Bus& bus) {
@@ -61,6 +63,8 @@ InjectionControllerNode::InjectionControllerNode(Bus& bus)
                                                        parameters_.input_timeout)),
       force_(cycle_.input<geometry_msgs::WrenchStamped>(forceTopic(parameters_.force_source), InputPhase::kSampled,
                                                         parameters_.input_timeout)),
+      interface_(cycle_.input<cell_microinjection::InterfacePosition>("needle/interface", InputPhase::kSampled,
+                                                                      kInterfaceTimeout)),
       setpoint_(cycle_.output<geometry_msgs::PoseStamped>("needle/servo_cp")),
       injection_(cycle_.output<cell_microinjection::InjectionStatus>("controller/injection_state", true)),
       force_lives_(cycle_, force_,
@@ -207,6 +211,9 @@ void InjectionControllerNode::step(const Cycle::Tick& tick) {
   InjectionController::Input input;
   input.target = validPosition(target, kWorldFrame);
   if (injector_) input.injector = injector_->report(tick.now);
+  const bool interface_is_new = interface_.takeUpdates() != nullptr;
+  const auto* seen = interface_.get(tick.now);
+  if (seen && std::isfinite(seen->position)) input.interface = InterfaceReading{seen->position, interface_is_new};
   input.rig_hold = rig_.takeHold();
   input.expected = expectedPuncture(tick.now);
   const bool acts_on_sensor = parameters_.force_source == "measured";

@@ -12,6 +12,7 @@
 #include "base/repetition.h"
 #include "cell_microinjection/CellEstimate.h"
 #include "cell_microinjection/InjectionStatus.h"
+#include "cell_microinjection/InterfacePosition.h"
 #include "cell_microinjection/ManipulatorAbilities.h"
 #include "cell_microinjection/OperatingState.h"
 #include "cell_microinjection/StringStamped.h"
@@ -34,7 +35,8 @@ namespace microinjection {
 ///      (PoseStamped), /cell/predicted_cf or /force_sensor/measured_cf (WrenchStamped),
 ///      /controller/state_command (StringStamped), /needle/abilities (ManipulatorAbilities, to
 ///      drive a slow rig slowly), /needle/operating_state and /needle/loop_state (does the rig
-///      follow?), the other force, /cell/parameters and /cell/contact (see Witnesses), /injector/state, /cell/estimate
+///      follow?), the other force, /cell/parameters and /cell/contact (see Witnesses), /injector/state,
+///      /needle/interface (InterfacePosition, what suction has drawn in, where somebody sees it), /cell/estimate
 ///      (CellEstimate, the expected puncture); the action Inject on /controller/inject
 /// Out: /needle/servo_cp (PoseStamped, `world`), /controller/operating_state (OperatingState,
 ///      latched, on change and after each state_command), /controller/injection_state
@@ -80,6 +82,7 @@ class InjectionControllerNode {
   Input<geometry_msgs::PoseStamped>* target_ = nullptr;  ///< null when the controller moves by itself
   Input<geometry_msgs::PoseStamped>& needle_;
   Input<geometry_msgs::WrenchStamped>& force_;
+  Input<cell_microinjection::InterfacePosition>& interface_;
   Output<geometry_msgs::PoseStamped>& setpoint_;
   Output<cell_microinjection::InjectionStatus>& injection_;
   std::unique_ptr<InjectorLink> injector_;  ///< null without an injector

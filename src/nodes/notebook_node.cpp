@@ -18,7 +18,7 @@ constexpr double kNotebookReportPeriod = 0.2;  // s of steady time
 
 /// Idle and approach are before the touch; the needle may leave the cell in any other state.
 bool inCell(const std::string& state) {
-  return state == "contact" || state == "indent" || state == "punctured" || state == "inject";
+  return state == "contact" || state == "indent" || state == "aspirate" || state == "punctured" || state == "inject";
 }
 
 std::string folderOf(const std::string& path) {

@@ -17,14 +17,6 @@ constexpr double kAllowedForce = 1.2;                         // of the zona's s
 constexpr double kAllowedDepth = 0.35, kAllowedAside = 0.02;  // diameters
 constexpr double kAllowedTime = 20;                           // s
 
-ManipulatorGeometry geometryOf(const std::string& urdf) {
-  std::ifstream file(urdf);
-  if (!file) throw ConfigError(urdf + ": cannot be read");
-  std::ostringstream text;
-  text << file.rdbuf();
-  return ManipulatorGeometry::fromUrdf(text.str());
-}
-
 TrainingTask taskOf(const InjectionCase& of, const PulseGoal& pulse) {
   TrainingTask task;
   task.peak_force = kAllowedForce * of.cell.puncture.layers.front().force;
@@ -37,6 +29,14 @@ TrainingTask taskOf(const InjectionCase& of, const PulseGoal& pulse) {
 }
 
 }  // namespace
+
+ManipulatorGeometry geometryOf(const std::string& urdf_path) {
+  std::ifstream file(urdf_path);
+  if (!file) throw ConfigError(urdf_path + ": cannot be read");
+  std::ostringstream text;
+  text << file.rdbuf();
+  return ManipulatorGeometry::fromUrdf(text.str());
+}
 
 InjectionRig::Disturbance randomFault(const InjectionCase& of, double share) {
   using Kind = InjectionRig::Disturbance::Kind;

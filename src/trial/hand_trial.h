@@ -19,6 +19,9 @@ struct TrialCell {
   std::string urdf;  ///< path, of the rig
 };
 
+/// Throws ConfigError for a file that cannot be read.
+ManipulatorGeometry geometryOf(const std::string& urdf_path);
+
 /// With a probability of `share` one fault that an operator meets: a sensor that is frozen, jumps (0.1 to 1 times the
 /// zona's strength) or drifts (0.02 to 0.2 times it a second), set-points that are lost for 3 s or are 0.05 to 0.3 s
 /// late, or a needle that drifts (0.1 to 1 um/s). It begins 0.5 to 8 s after the start.

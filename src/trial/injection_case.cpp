@@ -36,6 +36,33 @@ InjectionCase randomInjectionCase(int seed) {
   return result;
 }
 
+InjectionCase randomSuctionCase(int seed) {
+  InjectionCase result = randomInjectionCase(seed);
+  std::mt19937 random(static_cast<unsigned>(seed) + 700000);
+  const auto even = [&](double low, double high) { return low + (high - low) * (random() / 4294967296.0); };
+  const auto evenLog = [&](double low, double high) { return low * std::pow(high / low, even(0, 1)); };
+  const double diameter = even(50e-6, 150e-6), modulus = evenLog(1e3, 5e3), before = result.cell.diameter;
+  const double force = modulus / result.cell.young_modulus * diameter * diameter / (before * before);
+  result.cell.puncture.layers.resize(1);
+  result.cell.puncture.layers.front().force *= force;
+  result.cell.puncture.shaft.friction *= force;
+  result.cell.puncture.shaft.stiffness *= force * before / diameter;
+  result.cell.diameter = diameter;
+  result.believed_modulus *= modulus / result.cell.young_modulus;
+  result.cell.young_modulus = modulus;
+  result.offset *= diameter / before;
+  const double bore = even(2e-6, 3.5e-6), suction = evenLog(0.06, 0.25) * modulus;
+  result.cell.bore_radius = bore;
+  AspirationConfig& aspiration = result.cell.puncture.layers.front().aspiration.emplace();
+  aspiration.tension = suction * bore / (2 * (1 - 2 * bore / diameter));
+  if (seed % 2 == 0) aspiration.tension_scale = even(0.03, 0.1) * aspiration.tension;
+  if (seed % 10 == 9) aspiration.mode = "none";
+  result.cell.puncture.cytoplasm_viscosity = evenLog(0.1, 1);
+  result.pipette.tip_radius = bore;
+  result.pipette.viscosity = evenLog(2e-3, 50e-3);
+  return result;
+}
+
 Eigen::Vector3d startOf(const InjectionCase& of) {
   const double radius = 0.5 * of.cell.diameter, top = std::sqrt(radius * radius - of.offset.squaredNorm());
   return {of.offset.x(), of.offset.y(), top + of.gap};
@@ -56,6 +83,16 @@ InjectionControllerConfig injectionSettings(const InjectionCase& of) {
   config.goal.layers = static_cast<int>(of.cell.puncture.layers.size());
   config.goal.depth = 0.42 * diameter;
   config.goal.margin = 0.03 * diameter;
+  return config;
+}
+
+InjectionControllerConfig suctionSettings(const InjectionCase& of) {
+  InjectionControllerConfig config = injectionSettings(of);
+  config.goal.break_by = BreakBy::kSuction;
+  config.goal.suction.dent = 0.07 * of.cell.diameter;
+  config.goal.suction.largest = 0.35 * of.believed_modulus;
+  config.goal.suction.rate = 0.15 * of.believed_modulus;
+  config.goal.pulse.duration = 0;
   return config;
 }
 

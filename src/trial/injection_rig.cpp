@@ -11,11 +11,14 @@ InjectionRig::InjectionRig(const Config& config, const ManipulatorGeometry& geom
       device_(geometry, config.manipulator),
       manipulator_(geometry, CollisionGuard(), {}, device_),
       sensor_(config.sensor),
-      injector_({}),
+      injector_(config.injector),
       controller_(config.controller),
       cell_(&cell),
       disturbance_(config.disturbance),
-      expected_(config.expected) {
+      expected_(config.expected),
+      flow_(config.injector.pipette),
+      image_(config.interface),
+      random_(config.interface.seed) {
   Eigen::Isometry3d pose = geometry.tip_at_zero;
   pose.translation() = config.start;
   const std::string refusal = manipulator_.movePosition(pose);
@@ -73,9 +76,36 @@ bool InjectionRig::holds() {
   return (tip() - before).norm() < 1e-8 && !controller_.pulse() && !injector_.reading().busy;
 }
 
+/// What the controller sees of the interface now.
+std::optional<InterfaceReading> InjectionRig::interface() {
+  constexpr double kPeriod = 0.02;  // s
+  if (!image_.seen) return std::nullopt;
+  if (time_ >= next_frame_) {
+    const double noise = std::normal_distribution<double>(0, image_.noise)(random_);
+    frames_.push_back({time_, cell_->boreLength() + noise});
+    next_frame_ = time_ + kPeriod;
+  }
+  const bool arrives = !frames_.empty() && time_ >= frames_.front().time + image_.latency;
+  if (arrives) {
+    seen_ = frames_.front().position;
+    frames_.pop_front();
+  }
+  return seen_ ? std::optional(InterfaceReading{*seen_, arrives}) : std::nullopt;
+}
+
+/// Gives the injector what the controller wants of it.
+void InjectionRig::command(const std::optional<PulseGoal>& pulse) {
+  if (pulse && !pulsing_ && !isIn(Disturbance::Kind::kInjectorDead))
+    injector_.pulse({++pulses_, pulse->pressure, pulse->duration});
+  if (pulse && pulsing_) injector_.adjust(pulse->pressure);
+  if (!pulse && pulsing_ && injector_.reading().busy) injector_.stop();
+  pulsing_ = pulse.has_value();
+}
+
 void InjectionRig::step(const std::optional<Eigen::Vector3d>& target) {
   time_ += kStep;
   const Eigen::Vector3d tip = this->tip();
+  cell_->setBoreLine({flow_.restPressure() - injector_.reading().pressure, flow_.resistance()});
   const Eigen::Vector3d force = cell_->step(tip, time_);
   monitor(force, tip);
   read(force);
@@ -83,8 +113,10 @@ void InjectionRig::step(const std::optional<Eigen::Vector3d>& target) {
   input.target = target;
   if (const auto pose = manipulator_.tipPose()) input.needle = measured_ = pose->translation();
   input.force = Eigen::Vector3d(reading_.y(), 0, reading_.x());
+  const InjectorReading& reading = injector_.reading();
   input.injector =
-      InjectorReport{injector_.reading().busy, injector_.reading().volume, injector_.reading().last_id == pulses_};
+      InjectorReport{reading.busy, reading.volume, reading.last_id == pulses_, "", reading.pressure, reading.flow};
+  input.interface = interface();
   input.expected = expected_;
   if (isIn(Disturbance::Kind::kForceLost) || !cell_->valid()) input.force.reset();  // as cell_simulator says it
   if (isIn(Disturbance::Kind::kNeedleLost)) input.needle.reset();
@@ -97,11 +129,8 @@ void InjectionRig::step(const std::optional<Eigen::Vector3d>& target) {
     pose.translation() = *setpoint;
     manipulator_.servoPosition(pose);
   }
-  const auto pulse = controller_.pulse();
-  if (pulse && !pulsing_ && !isIn(Disturbance::Kind::kInjectorDead))
-    injector_.pulse({++pulses_, pulse->pressure, pulse->duration});
-  if (!pulse && pulsing_ && injector_.reading().busy) injector_.stop();
-  pulsing_ = pulse.has_value();
+  command(controller_.pulse());
+  monitorSuction(before == InjectionState::kAspirate && pulsing_);
   injector_.step(time_);
   manipulator_.step(time_, kStep);
 }
@@ -120,6 +149,17 @@ void InjectionRig::monitor(const Eigen::Vector3d& force, const Eigen::Vector3d& 
   truth_.puncture_depth = truth_.depth;
   if (!truth_.zona_depth) truth_.zona_depth = truth_.depth;
   failed_at_ = time_;
+}
+
+void InjectionRig::monitorSuction(bool drawing) {
+  const bool fails = failed_at_ == time_ && controller_.injection() == InjectionState::kAspirate;
+  if (fails && !volume_at_break_) {
+    truth_.broken_by_suction = true;
+    volume_at_break_ = cell_->boreVolume();
+  }
+  if (!volume_at_break_ || controller_.injection() != InjectionState::kAspirate) return;
+  truth_.drawn_too_much = std::max(truth_.drawn_too_much, cell_->boreVolume() - *volume_at_break_);
+  if (!drawing && !truth_.suction_latency) truth_.suction_latency = time_ - failed_at_;
 }
 
 void InjectionRig::receive(InjectionState before, int punctures_before) {

@@ -3,8 +3,10 @@
 #include <Eigen/Core>
 #include <deque>
 #include <optional>
+#include <random>
 
 #include "hardware/injector/injector_model.h"
+#include "hardware/injector/pipette_flow.h"
 #include "hardware/manipulator/micromanipulator.h"
 #include "hardware/manipulator/simulated_manipulator.h"
 #include "hardware/sensor/force_sensor.h"
@@ -42,6 +44,14 @@ class InjectionRig {
     std::optional<ExpectedPuncture> expected;  ///< by the controller
     ForceSensorConfig sensor;
     SimulatedManipulatorConfig manipulator;
+    InjectorModelConfig injector;
+    /// The image of the interface in the bore, 50 Hz.
+    struct InterfaceImage {
+      bool seen = false;
+      double noise = 0.15e-6;  ///< m, standard deviation
+      double latency = 0.02;   ///< s, until the controller has it
+      unsigned seed = 1;
+    } interface;
     Eigen::Vector3d start = Eigen::Vector3d::Zero();  ///< m, of the tip
   };
   static constexpr double kStep = 1e-3;  ///< s
@@ -67,13 +77,17 @@ class InjectionRig {
     std::optional<double> puncture_depth;  ///< m, same, where the last membrane failed
     std::optional<double> zona_depth;      ///< m, same, where the first one failed
     int punctures = 0;
-    double latency = 0;        ///< s, longest from a membrane's failure to the controller's word
-    int false_detections = 0;  ///< touches without contact, and punctures without a failure
-    int unfelt = 0;            ///< failures that the controller has not felt
-    bool valid = true;         ///< the cell's force, always
-    double depth = 0;          ///< m, now
-    double force = 0;          ///< N, along the pipette, now
-    bool in_cell = false;      ///< in contact or through a membrane, now
+    double latency = 0;              ///< s, longest from a membrane's failure to the controller's word
+    int false_detections = 0;        ///< touches without contact, and punctures without a failure
+    int unfelt = 0;                  ///< failures that the controller has not felt
+    bool valid = true;               ///< the cell's force, always
+    double depth = 0;                ///< m, now
+    double force = 0;                ///< N, along the pipette, now
+    bool in_cell = false;            ///< in contact or through a membrane, now
+    bool broken_by_suction = false;  ///< a membrane has failed while the needle drew it in
+    /// s after that failure, when the suction ended; empty: it has not
+    std::optional<double> suction_latency;
+    double drawn_too_much = 0;  ///< m^3, into the bore since then
   };
   const Truth& truth() const { return truth_; }
   const InjectionController& controller() const { return controller_; }
@@ -89,6 +103,9 @@ class InjectionRig {
   /// The set-point that reaches the micromanipulator now.
   std::optional<Eigen::Vector3d> arriving(const std::optional<Eigen::Vector3d>& setpoint);
   void monitor(const Eigen::Vector3d& force, const Eigen::Vector3d& tip);
+  void monitorSuction(bool drawing);
+  std::optional<InterfaceReading> interface();
+  void command(const std::optional<PulseGoal>& pulse);
   void receive(InjectionState before, int punctures_before);
 
   ManipulatorGeometry geometry_;
@@ -110,6 +127,16 @@ class InjectionRig {
   std::optional<double> touch_height_;  ///< m
   int felt_ = 0;
   double failed_at_ = 0;  ///< s
+  PipetteFlow flow_;
+  Config::InterfaceImage image_;
+  std::mt19937 random_;
+  struct Frame {
+    double time, position;  ///< s, m
+  };
+  std::deque<Frame> frames_;               ///< on their way, the newest last
+  double next_frame_ = 0;                  ///< s
+  std::optional<double> seen_;             ///< m, the last interface that the controller has seen
+  std::optional<double> volume_at_break_;  ///< m^3, of the cell in the bore, when a membrane failed under suction
   Truth truth_;
 };
 

@@ -15,7 +15,11 @@ PunctureConfig onPrepared(PunctureConfig puncture, double length, double force) 
     layer.dimple_radius /= length;
     layer.gap /= length;
     layer.stiffness *= length / force;
+    if (!layer.aspiration) continue;
+    layer.aspiration->tension *= length / force;
+    layer.aspiration->tension_scale *= length / force;
   }
+  puncture.cytoplasm_viscosity *= length * length / force;
   puncture.shaft.friction /= force;
   puncture.shaft.adhesion *= length / force;
   puncture.shaft.stiffness *= length / force;
@@ -24,8 +28,8 @@ PunctureConfig onPrepared(PunctureConfig puncture, double length, double force) 
 
 }  // namespace
 
-ScaledCell::ScaledCell(const Scene& scene, std::shared_ptr<const SurrogateData> prepared,
-                       const Properties& properties) {
+ScaledCell::ScaledCell(const Scene& scene, std::shared_ptr<const SurrogateData> prepared, const Properties& properties,
+                       const std::optional<BoreTongue>& tongue) {
   const double radius = 0.5 * properties.diameter, modulus = scene.cell.material().young_modulus;
   length_ = radius / scene.radius();
   force_ = properties.young_modulus / modulus * length_ * length_;
@@ -33,7 +37,20 @@ ScaledCell::ScaledCell(const Scene& scene, std::shared_ptr<const SurrogateData> 
   Scene here = scene;
   here.cell.material().viscoelasticity.prony = properties.prony;
   here.cell.puncture = onPrepared(properties.puncture, length_, force_);
-  cell_ = std::make_unique<PuncturableCell>(here, std::make_unique<SurrogateCellModel>(here, std::move(prepared)));
+  if (properties.bore_radius > 0) here.needle.bore_radius = properties.bore_radius / length_;
+  cell_ =
+      std::make_unique<PuncturableCell>(here, std::make_unique<SurrogateCellModel>(here, std::move(prepared)), tongue);
+}
+
+void ScaledCell::setBoreLine(const CellModel::BoreLine& line) {
+  const double pressure = force_ / (length_ * length_), volume = length_ * length_ * length_;
+  cell_->setBoreLine({line.suction / pressure, line.resistance * volume / pressure});
+}
+
+double ScaledCell::boreLength() const { return cell_->bore() ? length_ * cell_->bore()->length : 0; }
+
+double ScaledCell::boreVolume() const {
+  return cell_->bore() ? length_ * length_ * length_ * cell_->bore()->volume : 0;
 }
 
 Eigen::Vector3d ScaledCell::step(const Eigen::Vector3d& tip, double time) {

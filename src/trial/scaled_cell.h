@@ -11,7 +11,8 @@ namespace microinjection {
 /// A cell of any size and stiffness, whose membranes fail, from a prepared one by dimensional
 /// analysis: with gravity and inertia left out, a homogeneous neo-Hookean cell's force is F = E R^2
 /// f(x / R), so lengths scale with R and forces with E R^2. Everything scales: holding pipette and
-/// needle, too, so that a cell twice as large meets a tip twice as large. Times do not.
+/// needle, too, so that a cell twice as large meets a tip twice as large. Times do not, and neither does the needle's
+/// bore, which is small against any cell.
 class ScaledCell {
  public:
   /// Of the wanted cell.
@@ -20,14 +21,20 @@ class ScaledCell {
     double young_modulus = 17.9e3;  ///< Pa, of a load held for ever
     std::vector<PronyTerm> prony;
     PunctureConfig puncture;  ///< of the wanted cell; `damping` and `lateral_stiffness` of the shaft 0
+    double bore_radius = 0;   ///< m, of its needle; 0: it has none
   };
 
   /// @param scene  of `prepared`: one layer, elastic
-  ScaledCell(const Scene& scene, std::shared_ptr<const SurrogateData> prepared, const Properties& properties);
+  /// @param tongue of a needle with the wanted cell's bore; none: nothing is drawn in
+  ScaledCell(const Scene& scene, std::shared_ptr<const SurrogateData> prepared, const Properties& properties,
+             const std::optional<BoreTongue>& tongue = {});
 
   /// N, on a tip at `tip` (m), upright, at `time` (s).
   Eigen::Vector3d step(const Eigen::Vector3d& tip, double time);
 
+  void setBoreLine(const CellModel::BoreLine& line);  ///< of the wanted cell's needle, from the next step on
+  double boreLength() const;                          ///< m, of the cell in the bore
+  double boreVolume() const;                          ///< m^3, same
   int layersPunctured() const { return cell_->insertion().layers_punctured; }
   bool touched() const { return cell_->contact().has_value(); }
   /// In contact, or through a membrane.

@@ -33,6 +33,9 @@ class InjectorDevice {
   /// Sets the pressure between pulses (Pa, gauge). Returns an empty text, or the reason for the
   /// refusal.
   virtual std::string setBalance(double pressure) = 0;
+  /// Changes the pressure (Pa, gauge) of the pulse under way, as in a suction that grows. Returns an empty text, or the
+  /// reason for the refusal; the pulse then continues as it was.
+  virtual std::string adjust(double /*pressure*/) { return "it cannot change the pressure of a pulse under way"; }
   /// Ends a pending or current pulse and returns to the balance pressure. Such a pulse does not
   /// count as completed. Without a pulse it has no effect. Returns an empty text, or the reason for
   /// the refusal; the pulse then continues.

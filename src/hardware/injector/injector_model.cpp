@@ -51,6 +51,13 @@ std::string InjectorModel::setBalance(double pressure) {
   return refusal;
 }
 
+std::string InjectorModel::adjust(double pressure) {
+  if (!pulse_) return "no pulse is under way";
+  std::string refusal = config_.limits.checkPressure("pressure", pressure);
+  if (refusal.empty()) pulse_->pressure = pressure;
+  return refusal;
+}
+
 std::string InjectorModel::stop() {
   pulse_.reset();
   left_ = 0;

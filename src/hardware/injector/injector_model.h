@@ -27,6 +27,7 @@ class InjectorModel : public InjectorDevice {
 
   std::string pulse(const InjectionPulse& pulse) override;
   std::string setBalance(double pressure) override;
+  std::string adjust(double pressure) override;
   std::string stop() override;
   void reset() override;
   void step(double time) override;

@@ -18,10 +18,22 @@ InjectionGoal toGoal(const cell_microinjection::InjectGoal& message) {
   goal.depth = message.depth;
   goal.margin = message.margin;
   goal.hold_time = message.hold_time;
+  if (message.break_by.empty() || message.break_by == toText(BreakBy::kForce)) {
+    goal.break_by = BreakBy::kForce;  // the suction's numbers are not asked for
+  } else {
+    goal.break_by = *breakByOf(message.break_by);
+    goal.suction = {message.dent, message.suction, message.suction_rate, message.suction_time, message.suction_length};
+  }
   goal.pulse.pressure = message.pressure;
   goal.pulse.duration = message.duration;
   goal.pulse.volume = message.volume;
   return goal;
+}
+
+std::string problemsOf(const cell_microinjection::InjectGoal& message) {
+  if (!message.break_by.empty() && !breakByOf(message.break_by))
+    return "break_by = " + message.break_by + ", allowed force, suction, suction_then_force, force_then_suction";
+  return toGoal(message).problems();
 }
 
 cell_microinjection::InjectResult toMessage(const InjectionResult& result) {
@@ -37,6 +49,8 @@ cell_microinjection::InjectResult toMessage(const InjectionResult& result) {
   message.volume = result.volume;
   message.duration = result.duration;
   message.false_touches = result.false_touches;
+  message.break_suction = result.break_suction;
+  message.false_breaks = result.false_breaks;
   return message;
 }
 
@@ -51,7 +65,7 @@ InjectionAction::InjectionAction(Bus& bus, InjectionController& controller, cons
 
 void InjectionAction::receive(GoalHandle goal, const std::string& refusal) {
   const auto message = goal.getGoal();
-  const std::string problems = message->configured ? "" : toGoal(*message).problems();
+  const std::string problems = message->configured ? "" : problemsOf(*message);
   if (!refusal.empty() || !problems.empty()) return refuse(goal, refusal.empty() ? problems : refusal);
   recall("replaced by a newer goal before it began");
   next_ = goal;

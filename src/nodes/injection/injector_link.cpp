@@ -26,7 +26,8 @@ std::optional<InjectorReport> InjectorLink::report(const ros::Time& now) {
     begun_ = begun_ || state->busy;
     if (over) pending_ = 0;
   }
-  return InjectorReport{state->busy || pending_ != 0, state->volume, state->last_id == message_.id};
+  return InjectorReport{
+      state->busy || pending_ != 0, state->volume, state->last_id == message_.id, "", state->pressure, state->flow};
 }
 
 /// The injector tells why its last command was refused: "pulse 5 refused: ...". Other commands may follow.
@@ -51,6 +52,7 @@ void InjectorLink::setPulse(const std::optional<PulseGoal>& pulse, const ros::Ti
   if (!pulse || !requested_) refusal_.clear();
   if (pulse && pending_ != 0 && isDue(message_.header.stamp, now, kRepetition)) {
     message_.header.stamp = now;
+    message_.pressure = pulse->pressure;
     pulse_.publish(message_);
   }
   if (!pulse && requested_ && pending_ != 0) {

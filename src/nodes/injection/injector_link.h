@@ -13,8 +13,8 @@
 namespace microinjection {
 
 /// The controller's connection to the injector. A pulse is a message with its own id. It is
-/// repeated until the pulse is over, so that the pulse does not outlive the controller. A pulse
-/// that is withdrawn before its end becomes a stop.
+/// repeated until the pulse is over, so that the pulse does not outlive the controller, with the pressure that is
+/// wanted by then: a suction grows. A pulse that is withdrawn before its end becomes a stop.
 ///
 /// In:  /injector/state (InjectorState)
 /// Out: /injector/pulse (InjectionPulse), /injector/stop (StringStamped, the reason)

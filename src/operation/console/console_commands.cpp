@@ -53,6 +53,7 @@ std::string refusalOfStep(const SessionView& session, InjectionState from, bool 
   }
   if (session.settings.mode == "automatic") return "mode is automatic: the injection needs no command";
   if (inIdle(session)) return "no injection is under way";
+  if (from == InjectionState::kIndent && !session.settings.has_suction) return "the goal has no suction";
   const bool injected = session.volume > 0 && session.injection != InjectionState::kInject;
   if (is_pulse && injected) return "it is injected already";
   if (!session.waits) return no_step + " yet";
@@ -84,6 +85,8 @@ CommandOffer describe(ConsoleCommand command) {
       return {"Approach", "approach", "starts an injection", ""};
     case ConsoleCommand::kIndent:
       return {"Indent", "indent", "moves into the cell until a membrane fails", ""};
+    case ConsoleCommand::kAspirate:
+      return {"Aspirate", "aspirate", "draws the membrane in until it breaks", ""};
     case ConsoleCommand::kInject:
       return {"Inject", "inject", "starts the pulse", ""};
     case ConsoleCommand::kWithdraw:
@@ -101,6 +104,8 @@ std::string refusalOf(ConsoleCommand command, const SessionView& session) {
       return refusalOfApproach(session);
     case ConsoleCommand::kIndent:
       return refusalOfStep(session, InjectionState::kContact, false);
+    case ConsoleCommand::kAspirate:
+      return refusalOfStep(session, InjectionState::kIndent, false);
     case ConsoleCommand::kInject:
       return refusalOfStep(session, InjectionState::kPunctured, true);
     case ConsoleCommand::kWithdraw:

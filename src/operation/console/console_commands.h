@@ -8,10 +8,11 @@
 namespace microinjection {
 
 /// The console's buttons, from top to bottom.
-enum class ConsoleCommand { kEnable, kHome, kApproach, kIndent, kInject, kWithdraw, kDisable, kStop };
-constexpr std::array<ConsoleCommand, 8> kConsoleCommands = {
-    ConsoleCommand::kEnable, ConsoleCommand::kHome,     ConsoleCommand::kApproach, ConsoleCommand::kIndent,
-    ConsoleCommand::kInject, ConsoleCommand::kWithdraw, ConsoleCommand::kDisable,  ConsoleCommand::kStop};
+enum class ConsoleCommand { kEnable, kHome, kApproach, kIndent, kAspirate, kInject, kWithdraw, kDisable, kStop };
+constexpr std::array<ConsoleCommand, 9> kConsoleCommands = {
+    ConsoleCommand::kEnable,   ConsoleCommand::kHome,     ConsoleCommand::kApproach,
+    ConsoleCommand::kIndent,   ConsoleCommand::kAspirate, ConsoleCommand::kInject,
+    ConsoleCommand::kWithdraw, ConsoleCommand::kDisable,  ConsoleCommand::kStop};
 
 /// What a button does now.
 struct CommandOffer {

@@ -21,6 +21,8 @@ std::string nextSteps(const SessionView& session) {
   switch (*session.injection) {
     case InjectionState::kContact:
       return "waits for Indent or Withdraw";
+    case InjectionState::kIndent:
+      return session.settings.has_suction ? "waits for Aspirate or Withdraw" : "waits for Withdraw";
     case InjectionState::kPunctured:
       return session.volume > 0 ? "waits for Withdraw" : "waits for Inject or Withdraw";
     default:

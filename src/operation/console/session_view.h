@@ -13,6 +13,7 @@ namespace microinjection {
 struct ControllerSettings {
   std::string mode;                   ///< manual, semi_automatic or automatic; empty: not known
   bool has_pulse = true;              ///< the configured goal injects
+  bool has_suction = true;            ///< the configured goal breaks the last membrane by suction
   std::optional<double> force_limit;  ///< N, along the pipette
   std::optional<double> depth_limit;  ///< m past the contact point
   std::string error;                  ///< values that are no numbers; empty: none

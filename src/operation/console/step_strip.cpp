@@ -4,7 +4,7 @@
 
 namespace microinjection {
 
-constexpr std::array<InjectionState, 7> StepStrip::kSteps;
+constexpr std::array<InjectionState, 8> StepStrip::kSteps;
 
 /// A second layer leads from punctured back to indent: what was passed stays so until the needle
 /// starts anew.

@@ -11,9 +11,9 @@ namespace microinjection {
 class StepStrip {
  public:
   enum class Mark { kAhead, kPassed, kPresent };
-  static constexpr std::array<InjectionState, 7> kSteps = {
-      InjectionState::kIdle,      InjectionState::kApproach, InjectionState::kContact, InjectionState::kIndent,
-      InjectionState::kPunctured, InjectionState::kInject,   InjectionState::kWithdraw};
+  static constexpr std::array<InjectionState, 8> kSteps = {
+      InjectionState::kIdle,     InjectionState::kApproach,  InjectionState::kContact, InjectionState::kIndent,
+      InjectionState::kAspirate, InjectionState::kPunctured, InjectionState::kInject,  InjectionState::kWithdraw};
 
   /// `state`: of the newest message; empty: not known, then no step is lit.
   void update(std::optional<InjectionState> state);

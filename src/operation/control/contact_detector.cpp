@@ -20,7 +20,12 @@ double samplesBetweenFalseAlarms(double k, double h) {
   return (std::exp(exponent) - exponent - 1) / (2 * k * k);
 }
 
-double limitFor(double k, double false_rate) {
+/// An allowance below the offset's uncertainty would let the sum grow without bound.
+double smallestAllowance(int samples) { return std::max(kSmallestAllowance, kOffsetErrors / std::sqrt(samples)); }
+
+}  // namespace
+
+double pageLimit(double k, double false_rate) {
   double low = 0, high = 1;
   while (samplesBetweenFalseAlarms(k, high) < 1 / false_rate) high *= 2;
   for (int i = 0; i < 60; ++i) {
@@ -31,16 +36,11 @@ double limitFor(double k, double false_rate) {
   return std::max(high, normalQuantile(false_rate) - k);
 }
 
-/// An allowance below the offset's uncertainty would let the sum grow without bound.
-double smallestAllowance(int samples) { return std::max(kSmallestAllowance, kOffsetErrors / std::sqrt(samples)); }
-
-}  // namespace
-
 ContactDetector::ContactDetector(const ForceNoise& noise, double force, double false_rate)
     : offset_(noise.offset()),
       deviation_(noise.deviation()),
       allowance_(std::max(smallestAllowance(noise.samples()), 0.5 * force / noise.deviation())),
-      limit_(limitFor(allowance_, false_rate)),
+      limit_(pageLimit(allowance_, false_rate)),
       recent_(kDelay) {
   start_offset_ = offset_;
   offset_range_ = kOffsetRange * force;

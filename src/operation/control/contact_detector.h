@@ -6,6 +6,11 @@
 
 namespace microinjection {
 
+/// The limit h of Page's cumulative sum with the allowance k (both in units of the noise) by the mean distance of false
+/// alarms (Siegmund, "Sequential analysis", 1985: (exp(2 k b) - 2 k b - 1) / (2 k^2) samples, b = h + 1.166).
+/// @param false_rate  false alarms a sample, in (0, 0.01)
+double pageLimit(double k, double false_rate);
+
 /// Detects the first contact in a noisy force along the pipette by Page's cumulative sum
 /// ("Continuous inspection schemes", Biometrika 1954). Of all tests with a given rate of false
 /// alarms it is the fastest to detect a lasting change of its design size. In units of the noise,
@@ -20,9 +25,7 @@ class ContactDetector {
  public:
   /// @param noise       of the force at rest
   /// @param force       N, design change; a smaller one is detected later, one below half never
-  /// @param false_rate  false alarms a sample, in (0, 0.01); sets h by their mean distance
-  ///                    (Siegmund, "Sequential analysis", 1985: (exp(2 k b) - 2 k b - 1) / (2 k^2)
-  ///                    samples, b = h + 1.166)
+  /// @param false_rate  false alarms a sample, in (0, 0.01), which set h: see pageLimit()
   ContactDetector(const ForceNoise& noise, double force, double false_rate);
 
   /// Adds a sample (N, along the pipette, positive where the cell pushes back), taken after an

@@ -25,7 +25,7 @@ InjectionController::InjectionController(const InjectionControllerConfig& config
       monitor_(config.detection),
       witness_(config.detection, config.witness),
       withdrawal_(config.guards),
-      run_(config.motion, config.guards, config.expectation, config.mode == "automatic"),
+      run_(config.motion, config.guards, config.expectation, config.break_detection, config.mode == "automatic"),
       following_error_limit_(followingErrorLimit(config.guards, std::numeric_limits<double>::infinity())) {}
 
 std::string InjectionController::adaptTo(double speed, double lag) {
@@ -154,7 +154,7 @@ void InjectionController::invalidateNeedle(double dt) {
   needle_speed_.reset();
   endPulse(hold_reason_);
   if (byHand() || !run_.active() || state_ != OperatingState::kEnabled) return;
-  if (injection_ == InjectionState::kIndent) stop(InjectionOutcome::kGuard, hold_reason_ + " while it indents");
+  if (const char* work = blindWork()) stop(InjectionOutcome::kGuard, hold_reason_ + " while it " + work);
   const std::string late = run_.wait(injection_, dt);
   if (!late.empty()) stop(InjectionOutcome::kGuard, late);
 }
@@ -280,8 +280,8 @@ std::optional<Eigen::Vector3d> InjectionController::ownTarget(const Input& input
   if (!out && !isValid(input.force)) {
     hold_reason_ = "no valid force";
     // Without a force a puncture would not be detected.
-    if (injection_ == InjectionState::kIndent) {
-      stop(InjectionOutcome::kGuard, "no valid force while it indents");
+    if (const char* work = blindWork()) {
+      stop(InjectionOutcome::kGuard, std::string("no valid force while it ") + work);
       stopNeedle(input);
     }
     endPulse(hold_reason_);
@@ -294,6 +294,7 @@ std::optional<Eigen::Vector3d> InjectionController::ownTarget(const Input& input
     return std::nullopt;
   }
   run_.expect(input.expected);
+  run_.see(input.interface);
   InjectionRun::Step step = run_.step(injection_, monitor_, input.injector, *setpoint_, input.axis, dt);
   if (!step.stop) step.reason = out || run_.result().punctures > 0 ? "" : disagreement();
   if (step.event == InjectionEvent::kInject && step.reason.empty() && run_.goal().puncture)
@@ -399,9 +400,13 @@ InjectionControllerConfig InjectionControllerConfig::read(ConfigReader& reader) 
   config.expectation.read(expectation);
   ConfigReader witness = reader.section("witness");
   config.witness.read(witness);
+  ConfigReader breaks = reader.section("break_detection");
+  config.break_detection = BreakDetectionConfig::read(breaks);
   ConfigReader goal = reader.section("goal");
   config.goal = InjectionGoal::read(goal);
   if (config.goal.depth > config.guards.depth_limit) goal.error("depth", "must not be above depth_limit");
+  if (config.goal.break_by != BreakBy::kForce && config.goal.suction.dent > config.goal.depth)
+    goal.error("suction/dent", "must not be above depth");
   return config;
 }
 
@@ -414,6 +419,7 @@ std::string InjectionController::command(const std::string& command) {
 std::string InjectionController::execute(const std::string& command) {
   if (command == "approach") return start(config_.goal);
   if (command == "indent") return applyOperatorCommand(InjectionEvent::kIndent);
+  if (command == "aspirate") return applyOperatorCommand(InjectionEvent::kAspirate);
   if (command == "inject") return applyOperatorCommand(InjectionEvent::kInject);
   if (command == "withdraw") return withdraw();
   return applyCommand(command);
@@ -423,8 +429,8 @@ std::string InjectionController::applyCommand(const std::string& text) {
   const auto command = stateCommandOf(text);
   if (!command) {
     return "\"" + text +
-           "\" is no command here; allowed: enable, disable, pause, resume, home, unhome, approach, indent, inject, "
-           "withdraw";
+           "\" is no command here; allowed: enable, disable, pause, resume, home, unhome, approach, indent, aspirate, "
+           "inject, withdraw";
   }
   std::string refusal = *command == StateCommand::kHome ? goHome() : change(*command);
   if (!refusal.empty()) return refusal;
@@ -456,7 +462,7 @@ std::string InjectionController::change(StateCommand command) {
       hold_reason_ = "PAUSED";
       break;
     case StateCommand::kResume:
-      run_.resetSpeed();
+      run_.restart();
       break;
     case StateCommand::kUnhome:
       unhomed_ = true;
@@ -536,7 +542,17 @@ std::string InjectionController::withdraw() {
   return "";
 }
 
+/// What the needle does in which a break would not be noticed; null: nothing.
+const char* InjectionController::blindWork() const {
+  if (injection_ == InjectionState::kIndent) return "indents";
+  return injection_ == InjectionState::kAspirate ? "aspirates" : nullptr;
+}
+
 std::optional<PulseGoal> InjectionController::pulse() const {
+  if (injection_ == InjectionState::kAspirate && state_ == OperatingState::kEnabled && run_.active()) {
+    const std::optional<double> pressure = run_.suctionPressure();
+    return pressure ? std::optional(PulseGoal{*pressure, InjectionGoalLimits::kDuration, 0}) : std::nullopt;
+  }
   if (injection_ != InjectionState::kInject) return std::nullopt;
   if (run_.active()) return run_.goal().pulse;
   return pulse_by_hand_ ? std::optional(config_.goal.pulse) : std::nullopt;
@@ -560,7 +576,8 @@ void InjectionController::endPulse(const std::string& reason) {
     notice_ = "the pulse was ended: " + reason;
     return apply(InjectionEvent::kInjected);
   }
-  stop(InjectionOutcome::kGuard, reason + " while it injects");
+  stop(InjectionOutcome::kGuard,
+       reason + (injection_ == InjectionState::kInject ? " while it injects" : " while it aspirates"));
 }
 
 }  // namespace microinjection

@@ -30,6 +30,7 @@ struct InjectionControllerConfig {
   InjectionMotionConfig motion;
   ExpectationConfig expectation;
   WitnessConfig witness;
+  BreakDetectionConfig break_detection;
   InjectionGoal goal;  ///< for injections started without one
 
   static InjectionControllerConfig read(ConfigReader& reader);
@@ -72,9 +73,9 @@ struct InjectionControllerConfig {
 ///     witnesses disagree  -                             stops; a pulse does not begin
 ///     time in a state     -                             stops, also during withdrawal
 ///     sensor at fault     PAUSED, a pulse ends          stops, except during withdrawal
-///     no valid force      held meanwhile                indent, inject: stops; withdraw: none;
-///                                                       else held meanwhile
-///     no valid needle     held meanwhile, a pulse ends  indent, inject: stops; else held
+///     no valid force      held meanwhile                indent, aspirate, inject: stops; withdraw:
+///                                                       none; else held meanwhile
+///     no valid needle     held meanwhile, a pulse ends  indent, aspirate, inject: stops; else held
 ///                                                       meanwhile, up to the time guard
 ///     needle does not     the set-point waits for it;   the set-point waits for it
 ///     follow              the hand's motion is ignored
@@ -99,6 +100,7 @@ class InjectionController {
     bool witness_is_new = true;                       ///< as force_is_new
     std::string witness_fault;                        ///< why it cannot be believed; empty: it can, or there is none
     std::optional<Image> image;                       ///< of the tip before the cell, when it is sure
+    std::optional<InterfaceReading> interface;        ///< in the needle's bore, when an image shows it
     std::optional<bool> predicted_inside;             ///< whether the cell whose force is predicted is punctured
     bool cell_changed = false;                        ///< its force now is no event of the needle
     Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< of the pipette, out of the cell, `world`
@@ -113,7 +115,7 @@ class InjectionController {
   /// - home: withdraws the needle along the pipette, moves it across to where it was enabled, never
   ///   deeper than it is, and pauses. It needs no valid force.
   /// - unhome: ends an injection and holds the needle until home.
-  /// - approach: starts the configured goal. indent, inject: the operator's next step. By hand only
+  /// - approach: starts the configured goal. indent, aspirate, inject: the operator's next step. By hand only
   ///   inject is allowed.
   /// - withdraw: ends (preempts) an injection in any state and returns the needle to its start,
   ///   also after a guard, and from the cell after disable. After a pause by the operator the
@@ -161,7 +163,8 @@ class InjectionController {
   int punctures() const { return punctures_; }  ///< detected since the needle started
   double injectedVolume() const { return byHand() ? hand_pulse_.volume() : run_.result().volume; }  ///< m^3, since then
   const InjectionResult& result() const { return run_.result(); }  ///< final when not running()
-  /// The pulse for the injector now; empty: none, a pulse under way must stop.
+  /// The pulse for the injector now, whose pressure may change while it lasts; a suction is one below the pressure
+  /// between pulses. Empty: none, a pulse under way must stop.
   std::optional<PulseGoal> pulse() const;
 
  private:
@@ -195,6 +198,7 @@ class InjectionController {
   void stop(InjectionOutcome outcome, const std::string& reason);
   void stopNeedle(const Input& input);
   void endPulse(const std::string& reason);
+  const char* blindWork() const;
   void stepHome(const Input& input, double dt);
   void holdUnhomed();
   void follow(const Eigen::Vector3d& target, const Input& input, double dt);

@@ -1,5 +1,7 @@
 #include "operation/control/injection_goal.h"
 
+#include <algorithm>
+#include <iterator>
 #include <sstream>
 
 namespace microinjection {
@@ -9,9 +11,11 @@ using Limits = InjectionGoalLimits;
 
 const Range kLayers = Range::closed(1, Limits::kLayers);
 
-/// A number of a goal: its key, in the section pulse or outside of it, and its range.
+constexpr const char* kBreakBy[] = {"force", "suction", "suction_then_force", "force_then_suction"};
+
+/// A number of a goal: its section, none of it empty, its key and its range.
 struct Number {
-  bool of_pulse;
+  const char* section;
   const char* key;
   const char* unit;
   Range allowed;
@@ -19,16 +23,32 @@ struct Number {
 };
 
 const Number kNumbers[] = {
-    {false, "depth", "m", {0, Limits::kDistance, true, false}, [](InjectionGoal& g) -> double& { return g.depth; }},
-    {false, "margin", "m", Range::closed(0, Limits::kDistance), [](InjectionGoal& g) -> double& { return g.margin; }},
-    {false, "hold_time", "s", Range::closed(0, Limits::kHoldTime),
+    {"", "depth", "m", {0, Limits::kDistance, true, false}, [](InjectionGoal& g) -> double& { return g.depth; }},
+    {"", "margin", "m", Range::closed(0, Limits::kDistance), [](InjectionGoal& g) -> double& { return g.margin; }},
+    {"", "hold_time", "s", Range::closed(0, Limits::kHoldTime),
      [](InjectionGoal& g) -> double& { return g.hold_time; }},
-    {true, "pressure", "Pa", Range::closed(0, Limits::kPressure),
+    {"pulse", "pressure", "Pa", Range::closed(0, Limits::kPressure),
      [](InjectionGoal& g) -> double& { return g.pulse.pressure; }},
-    {true, "duration", "s", Range::closed(0, Limits::kDuration),
+    {"pulse", "duration", "s", Range::closed(0, Limits::kDuration),
      [](InjectionGoal& g) -> double& { return g.pulse.duration; }},
-    {true, "volume", "m^3", Range::closed(0, Limits::kVolume),
+    {"pulse", "volume", "m^3", Range::closed(0, Limits::kVolume),
      [](InjectionGoal& g) -> double& { return g.pulse.volume; }},
+    {"suction", "dent", "m", Range::closed(0, Limits::kDistance),
+     [](InjectionGoal& g) -> double& { return g.suction.dent; }},
+    {"suction",
+     "largest",
+     "Pa",
+     {0, Limits::kSuction, true, false},
+     [](InjectionGoal& g) -> double& { return g.suction.largest; }},
+    {"suction", "rate", "Pa/s", Range::closed(0, Limits::kPressure),
+     [](InjectionGoal& g) -> double& { return g.suction.rate; }},
+    {"suction", "time", "s", Range::closed(0, Limits::kDuration),
+     [](InjectionGoal& g) -> double& { return g.suction.time; }},
+    {"suction",
+     "length",
+     "m",
+     {0, Limits::kDistance, true, false},
+     [](InjectionGoal& g) -> double& { return g.suction.length; }},
 };
 
 }  // namespace
@@ -37,9 +57,14 @@ InjectionGoal InjectionGoal::read(ConfigReader& reader) {
   InjectionGoal goal;
   reader.boolean("puncture", goal.puncture);
   reader.integer("layers", goal.layers, kLayers);
-  ConfigReader pulse = reader.section("pulse");
+  std::string by = toText(goal.break_by);
+  reader.choice("break_by", by, {std::begin(kBreakBy), std::end(kBreakBy)});
+  goal.break_by = breakByOf(by).value_or(goal.break_by);
+  ConfigReader pulse = reader.section("pulse"), suction = reader.section("suction");
   for (const Number& number : kNumbers) {
-    (number.of_pulse ? pulse : reader).number(number.key, number.in(goal), number.allowed);
+    const std::string section = number.section;
+    ConfigReader& keys = section == "pulse" ? pulse : section == "suction" ? suction : reader;
+    keys.number(number.key, number.in(goal), number.allowed);
   }
   return goal;
 }
@@ -53,10 +78,19 @@ std::string InjectionGoal::problems() const {
   check("layers", layers, kLayers, "");
   InjectionGoal goal = *this;
   for (const Number& number : kNumbers) {
-    check((number.of_pulse ? "pulse/" : "") + std::string(number.key), number.in(goal), number.allowed,
+    const std::string section = number.section;
+    check((section.empty() ? "" : section + "/") + number.key, number.in(goal), number.allowed,
           std::string(" ") + number.unit);
   }
   return text.str();
+}
+
+const char* toText(BreakBy by) { return kBreakBy[static_cast<int>(by)]; }
+
+std::optional<BreakBy> breakByOf(const std::string& name) {
+  const auto* found = std::find(std::begin(kBreakBy), std::end(kBreakBy), name);
+  if (found == std::end(kBreakBy)) return std::nullopt;
+  return static_cast<BreakBy>(found - std::begin(kBreakBy));
 }
 
 const char* toText(InjectionOutcome outcome) {

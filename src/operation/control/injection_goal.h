@@ -15,12 +15,29 @@ struct PulseGoal {
   double volume = 0;       ///< m^3, ends the pulse early; 0: by time only
 };
 
+/// What breaks the last membrane of a goal: the needle's force, suction in its bore, or one and, where it fails, the
+/// other.
+enum class BreakBy { kForce, kSuction, kSuctionThenForce, kForceThenSuction };
+const char* toText(BreakBy by);  ///< "force", "suction", "suction_then_force", "force_then_suction"
+std::optional<BreakBy> breakByOf(const std::string& name);
+
+/// The suction of a goal, see SuctionRun.
+struct SuctionGoal {
+  double dent = 10e-6;    ///< m past the touch, or past the membrane before, where the needle rests and draws
+  double largest = 2e3;   ///< Pa below the pressure between pulses
+  double rate = 500;      ///< Pa/s; 0: all at once, for injectors that cannot change a pulse's pressure
+  double time = 1;        ///< s at the largest
+  double length = 50e-6;  ///< m from the mouth, of the interface in the image, that ends it
+};
+
 /// State of the injector.
 struct InjectorReport {
   bool busy = false;      ///< a pulse is under way
   double volume = 0;      ///< m^3, delivered since it was reset
   bool done = false;      ///< the last requested pulse ended and was not aborted
   std::string refusal{};  ///< why the last requested pulse does not begin; empty: it was not refused
+  double pressure = 0;    ///< Pa, gauge
+  double flow = 0;        ///< m^3/s, out of the tip
 };
 
 /// Limits of any injection of a cell. A goal beyond them is refused, whatever the guards of the rig
@@ -32,16 +49,19 @@ struct InjectionGoalLimits {
   static constexpr double kPressure = 1e6;   ///< Pa, gauge; above what injectors of cells deliver (some 0.6 MPa)
   static constexpr double kDuration = 60;    ///< s, as the duration_range of config/injector.yaml
   static constexpr double kVolume = 1e-9;    ///< m^3, the volume of the largest cells
+  static constexpr double kSuction = 90e3;   ///< Pa; more is a vacuum
 };
 
 /// Parameters of one injection that the controller moves. InjectionMotionConfig has the speeds,
-/// which depend on rig and cell. Nothing may be negative: suction is no injection.
+/// which depend on rig and cell. No number may be negative: suctions are positive.
 struct InjectionGoal {
   bool puncture = true;    ///< false: indent to `depth`, wait `hold_time` and withdraw
   int layers = 1;          ///< membranes to puncture before the injection
   double depth = 40e-6;    ///< m past the contact point; a membrane intact there ends the injection
   double margin = 3e-6;    ///< m past the last puncture, depth of the injection; at most the depth limit
   double hold_time = 0.2;  ///< s at depth before the withdrawal, after an injection
+  BreakBy break_by = BreakBy::kForce;
+  SuctionGoal suction;
   PulseGoal pulse;
 
   static InjectionGoal read(ConfigReader& reader);
@@ -88,6 +108,8 @@ struct InjectionResult {
   double volume = 0;                     ///< m^3, injected
   double duration = 0;                   ///< s
   int false_touches = 0;                 ///< contacts that the second check did not confirm
+  double break_suction = 0;              ///< Pa, that broke the last membrane; 0: no suction did
+  int false_breaks = 0;                  ///< alarms of a break that were not confirmed
 };
 
 }  // namespace microinjection

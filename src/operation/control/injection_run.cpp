@@ -27,12 +27,12 @@ InjectionMotionConfig InjectionMotionConfig::read(ConfigReader& reader) {
 }
 
 InjectionRun::InjectionRun(const InjectionMotionConfig& config, const GuardConfig& guards,
-                           const ExpectationConfig& expectation, bool automatic)
-    : config_(config), guards_(guards), expectation_(expectation), automatic_(automatic) {}
+                           const ExpectationConfig& expectation, const BreakDetectionConfig& breaks, bool automatic)
+    : config_(config), guards_(guards), expectation_(expectation), breaks_(breaks), automatic_(automatic) {}
 
 void InjectionRun::start(const InjectionGoal& goal, const Eigen::Vector3d& tip) {
   const double speed_limit = speed_limit_;
-  *this = InjectionRun(config_, guards_, expectation_, automatic_);
+  *this = InjectionRun(config_, guards_, expectation_, breaks_, automatic_);
   speed_limit_ = speed_limit;
   goal_ = goal;
   start_ = tip;
@@ -42,11 +42,14 @@ void InjectionRun::start(const InjectionGoal& goal, const Eigen::Vector3d& tip) 
 std::string InjectionRun::confirm(InjectionEvent event, InjectionState state) {
   if (automatic_) return "mode is automatic: the injection needs no command";
   if (!active_) return "no injection is under way";
+  if (event == InjectionEvent::kAspirate && goal_.break_by == BreakBy::kForce) return "the goal has no suction";
   if (event == InjectionEvent::kInject && (injected_ || goal_.pulse.duration <= 0)) {
     return injected_ ? "it is injected already" : "the goal has no pulse";
   }
-  const bool fits = state == state_ && (event == InjectionEvent::kIndent ? state == InjectionState::kContact
-                                                                         : state == InjectionState::kPunctured);
+  const InjectionState from = event == InjectionEvent::kIndent     ? InjectionState::kContact
+                              : event == InjectionEvent::kAspirate ? InjectionState::kIndent
+                                                                   : InjectionState::kPunctured;
+  const bool fits = state == state_ && state == from && (event != InjectionEvent::kAspirate || drawsNext());
   if (!awaits_command_ || !fits)
     return std::string("it is no step from ") + toText(state) + (awaits_command_ ? "" : " yet");
   confirmed_ = event;
@@ -112,6 +115,7 @@ InjectionRun::Step InjectionRun::step(InjectionState state, const NeedleMonitor&
   if (state == InjectionState::kApproach) approach(monitor, dt, step);
   if (state == InjectionState::kContact) contact(monitor, step);
   if (state == InjectionState::kIndent) indent(monitor, dt, step);
+  if (state == InjectionState::kAspirate) aspirate(monitor, injector, dt, step);
   if (state == InjectionState::kPunctured) through(monitor, dt, step);
   if (state == InjectionState::kInject) inject(injector, dt, step);
   if (state == InjectionState::kWithdraw) retract(dt, step);
@@ -127,8 +131,12 @@ void InjectionRun::enter(InjectionState state, const NeedleMonitor& monitor) {
   state_time_ = rested_ = speed_ = 0;
   awaits_command_ = false;
   confirmed_.reset();
-  if (state == InjectionState::kContact) touch_travel_ = travel_;
-  if (state == InjectionState::kIndent) end_travel_ = touch_travel_ + std::min(goal_.depth, guards_.depth_limit);
+  suction_.reset();
+  if (state == InjectionState::kContact) touch_travel_ = layer_travel_ = travel_;
+  if (state == InjectionState::kIndent) {
+    end_travel_ = touch_travel_ + std::min(goal_.depth, guards_.depth_limit);
+    if (drawsFirst()) end_travel_ = std::max(travel_, std::min(end_travel_, layer_travel_ + goal_.suction.dent));
+  }
   if (state == InjectionState::kPunctured && !injected_) {
     const double deep = std::min(monitor.depth() + goal_.margin, guards_.depth_limit);
     end_travel_ = std::max(travel_, touch_travel_ + deep);
@@ -176,7 +184,8 @@ double InjectionRun::stabSpeed(const NeedleMonitor& monitor, double dt) const {
   const auto expected = this->expected();
   const double failing = std::max(monitor.force(), expected ? expected->force_low : 0);
   const double fast = overshoot / (monitor.latencyAt(failing) * dt + config_.stop_time);
-  const double wanted = std::clamp(goal_.puncture ? fast : 0, config_.indent_speed, config_.stab_speed);
+  const bool stabs = goal_.puncture && !drawsFirst();
+  const double wanted = std::clamp(stabs ? fast : 0, config_.indent_speed, config_.stab_speed);
   const double faster = std::min(wanted, std::max(speed_, config_.indent_speed) + config_.stab_acceleration * dt);
   const double room = end_travel_ - travel_ - std::max(speed_, faster) * (config_.stop_time + dt);
   const double braking = std::sqrt(2 * config_.stab_acceleration * std::max(0.0, room));
@@ -185,7 +194,7 @@ double InjectionRun::stabSpeed(const NeedleMonitor& monitor, double dt) const {
 
 void InjectionRun::indent(const NeedleMonitor& monitor, double dt, Step& step) {
   if (monitor.punctured()) {
-    countPuncture(monitor, step);
+    countPuncture(monitor, monitor.forceBefore(), step);
     return;
   }
   step.reason = unexpected(monitor);
@@ -198,7 +207,9 @@ void InjectionRun::indent(const NeedleMonitor& monitor, double dt, Step& step) {
   if (travel_ < end_travel_) return;
   rested_ += dt;
   const bool there = monitor.depth() >= end_travel_ - touch_travel_ - kArrived || rested_ > kSettling;
-  if (goal_.puncture && there) {
+  if (there && drawsNext()) {
+    if (mayProceed(InjectionEvent::kAspirate)) step.event = InjectionEvent::kAspirate;
+  } else if (goal_.puncture && there) {
     step.stop = InjectionOutcome::kNotPunctured;
     step.reason = "the membrane is not punctured at the goal's depth";
   }
@@ -208,9 +219,54 @@ void InjectionRun::indent(const NeedleMonitor& monitor, double dt, Step& step) {
   }
 }
 
-void InjectionRun::countPuncture(const NeedleMonitor& monitor, Step& step) {
+/// Whether suction is to break the membrane before the needle, and has not failed to.
+bool InjectionRun::drawsNext() const {
+  return goal_.puncture && goal_.break_by != BreakBy::kForce && !drew_ && result_.punctures == goal_.layers - 1;
+}
+
+void InjectionRun::aspirate(const NeedleMonitor& monitor, const std::optional<InjectorReport>& injector, double dt,
+                            Step& step) {
+  if (!suction_) {
+    suction_.emplace(goal_.suction, breaks_, monitor.noise());
+    dent_force_ = monitor.force();
+  }
+  const int alarms = suction_->falseAlarms();
+  const SuctionRun::Status status = suction_->step(monitor.reading(), interface_, injector, dt);
+  result_.false_breaks += suction_->falseAlarms() - alarms;
+  const auto end = [&step](InjectionOutcome outcome, const std::string& reason) {
+    step.stop = outcome;
+    step.reason = reason;
+  };
+  switch (status) {
+    case SuctionRun::Status::kUnderWay:
+      return;
+    case SuctionRun::Status::kBroken:
+      result_.break_suction = suction_->suction();
+      return countPuncture(monitor, dent_force_, step);
+    case SuctionRun::Status::kWhole:
+      drew_ = true;
+      if (goal_.break_by == BreakBy::kSuctionThenForce) {
+        step.event = InjectionEvent::kIndent;
+        return;
+      }
+      return end(InjectionOutcome::kNotPunctured, "the membrane withstands the largest suction");
+    case SuctionRun::Status::kTooMuch:
+      return end(InjectionOutcome::kNotPunctured,
+                 "the interface has come as far as suction may draw it, and has gone back");
+    case SuctionRun::Status::kNoWord:
+      return end(InjectionOutcome::kNotPunctured,
+                 "the witnesses have told a break too often that they did not confirm");
+    case SuctionRun::Status::kInjector:
+      const bool refuses = injector && !injector->refusal.empty();
+      return end(refuses ? InjectionOutcome::kNotInjected : InjectionOutcome::kInjectorTimeOut,
+                 refuses ? "the injector refused the suction: " + injector->refusal : "no valid state of the injector");
+  }
+}
+
+void InjectionRun::countPuncture(const NeedleMonitor& monitor, double force, Step& step) {
   ++result_.punctures;
-  result_.puncture_force = monitor.forceBefore();
+  layer_travel_ = travel_;
+  result_.puncture_force = force;
   result_.puncture_depth = monitor.depth();
   step.event = InjectionEvent::kPuncture;
 }

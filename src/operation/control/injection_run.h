@@ -12,6 +12,7 @@
 #include "operation/control/injection_state.h"
 #include "operation/control/injector_wait.h"
 #include "operation/control/needle_monitor.h"
+#include "operation/control/suction_run.h"
 
 namespace microinjection {
 
@@ -39,8 +40,8 @@ struct InjectionMotionConfig {
 };
 
 /// One injection along the pipette's axis without a hand: approach until contact, confirm it,
-/// indent until the puncture, inject, withdraw. Each step returns the target of the tip and an
-/// event; the caller keeps the state.
+/// indent until the puncture, or to a dent in which suction breaks the membrane, inject, withdraw. Each step returns
+/// the target of the tip and an event; the caller keeps the state.
 class InjectionRun {
  public:
   struct Step {
@@ -52,7 +53,7 @@ class InjectionRun {
 
   /// `automatic` = false: waits for confirm() in contact, at depth and after the injection.
   InjectionRun(const InjectionMotionConfig& config, const GuardConfig& guards, const ExpectationConfig& expectation,
-               bool automatic);
+               const BreakDetectionConfig& breaks, bool automatic);
 
   void start(const InjectionGoal& goal, const Eigen::Vector3d& tip);
   /// The operator's command for the next step (indent, inject). Returns empty, or the reason for
@@ -61,7 +62,13 @@ class InjectionRun {
   void limitSpeed(double speed) { speed_limit_ = speed; }  ///< m/s
   /// Of the outermost membrane; empty: nothing is expected. Call before each step.
   void expect(const std::optional<ExpectedPuncture>& expected) { expected_ = expected; }
-  void resetSpeed() { speed_ = 0; }  ///< after a rest: a stab starts slowly again
+  /// The interface in the needle's bore; empty: no image shows it. Call before each step.
+  void see(const std::optional<InterfaceReading>& interface) { interface_ = interface; }
+  /// After a rest: a stab starts slowly again, and suction from nothing.
+  void restart() {
+    speed_ = 0;
+    suction_.reset();
+  }
   /// The withdrawal begins; the outcome is that of the completed steps.
   void withdraw();
   void end(InjectionOutcome outcome, const std::string& reason);
@@ -75,6 +82,8 @@ class InjectionRun {
   /// Waits dt (s) in `state`. Returns empty, or the time guard's reason.
   std::string wait(InjectionState state, double dt);
 
+  /// Pa, gauge, of the suction wanted now; empty: none.
+  std::optional<double> suctionPressure() const { return suction_ ? suction_->pressure() : std::nullopt; }
   bool active() const { return active_; }
   bool awaitsCommand() const { return awaits_command_; }  ///< of the operator
   const InjectionGoal& goal() const { return goal_; }
@@ -85,13 +94,16 @@ class InjectionRun {
   void approach(const NeedleMonitor& monitor, double dt, Step& step);
   void contact(const NeedleMonitor& monitor, Step& step);
   void indent(const NeedleMonitor& monitor, double dt, Step& step);
+  void aspirate(const NeedleMonitor& monitor, const std::optional<InjectorReport>& injector, double dt, Step& step);
+  bool drawsNext() const;
+  bool drawsFirst() const { return drawsNext() && goal_.break_by != BreakBy::kForceThenSuction; }
   void through(const NeedleMonitor& monitor, double dt, Step& step);
   void inject(const std::optional<InjectorReport>& injector, double dt, Step& step);
   void retract(double dt, Step& step);
   std::optional<ExpectedPuncture> expected() const;  ///< of the next membrane
   std::string unexpected(const NeedleMonitor& monitor) const;
   double stabSpeed(const NeedleMonitor& monitor, double dt) const;
-  void countPuncture(const NeedleMonitor& monitor, Step& step);
+  void countPuncture(const NeedleMonitor& monitor, double force, Step& step);
   bool mayProceed(InjectionEvent event);
   InjectionOutcome done() const;
   void beginWithdrawal(InjectionOutcome outcome, const std::string& reason, Step& step);
@@ -99,8 +111,10 @@ class InjectionRun {
   InjectionMotionConfig config_;
   GuardConfig guards_;
   ExpectationConfig expectation_;
+  BreakDetectionConfig breaks_;
   bool automatic_;
   std::optional<ExpectedPuncture> expected_;
+  std::optional<InterfaceReading> interface_;
   InjectionGoal goal_;
   InjectionResult result_;
   bool active_ = false, awaits_command_ = false;
@@ -109,6 +123,7 @@ class InjectionRun {
   Eigen::Vector3d start_ = Eigen::Vector3d::Zero();               ///< m
   double travel_ = 0;                                             ///< m, from start_ into the cell
   double touch_travel_ = 0;                                       ///< m
+  double layer_travel_ = 0;                                       ///< m, where the present membrane begins
   double end_travel_ = 0;                                         ///< m, of the state
   double speed_ = 0;                                              ///< m/s
   double speed_limit_ = std::numeric_limits<double>::infinity();  ///< m/s, of the rig
@@ -117,6 +132,9 @@ class InjectionRun {
   InjectionOutcome outcome_ = InjectionOutcome::kNone;  ///< of the completed steps; the result's when the needle is out
   std::string reason_;
   bool injected_ = false;
+  std::optional<SuctionRun> suction_;  ///< under way
+  double dent_force_ = 0;              ///< N, before it
+  bool drew_ = false;                  ///< the last membrane has withstood it
   InjectorWait wait_;
 };
 

@@ -3,8 +3,8 @@
 namespace microinjection {
 
 const char* toText(InjectionState state) {
-  constexpr const char* kWords[] = {"idle",      "approach", "contact",  "indent",
-                                    "punctured", "inject",   "withdraw", "fault"};
+  constexpr const char* kWords[] = {"idle",   "approach", "contact", "indent",  "punctured",
+                                    "inject", "withdraw", "fault",   "aspirate"};
   return kWords[static_cast<int>(state)];
 }
 
@@ -33,6 +33,8 @@ std::optional<InjectionState> after(InjectionState state, InjectionEvent event) 
       {State::kPunctured, Event::kWithdraw, State::kWithdraw},  {State::kInject, Event::kInjected, State::kPunctured},
       {State::kInject, Event::kWithdraw, State::kWithdraw},     {State::kWithdraw, Event::kTouch, State::kContact},
       {State::kWithdraw, Event::kWithdraw, State::kWithdraw},   {State::kWithdraw, Event::kOut, State::kIdle},
+      {State::kIndent, Event::kAspirate, State::kAspirate},     {State::kAspirate, Event::kIndent, State::kIndent},
+      {State::kAspirate, Event::kPuncture, State::kPunctured},  {State::kAspirate, Event::kWithdraw, State::kWithdraw},
   };
   if (event == Event::kReset) return State::kIdle;
   if (event == Event::kFail) return State::kFault;

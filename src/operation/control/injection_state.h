@@ -7,10 +7,11 @@
 namespace microinjection {
 
 /// State of an injection, the same by hand and by the controller.
-enum class InjectionState { kIdle, kApproach, kContact, kIndent, kPunctured, kInject, kWithdraw, kFault };
-constexpr std::array<InjectionState, 8> kInjectionStates = {
-    InjectionState::kIdle,      InjectionState::kApproach, InjectionState::kContact,  InjectionState::kIndent,
-    InjectionState::kPunctured, InjectionState::kInject,   InjectionState::kWithdraw, InjectionState::kFault};
+enum class InjectionState { kIdle, kApproach, kContact, kIndent, kPunctured, kInject, kWithdraw, kFault, kAspirate };
+constexpr std::array<InjectionState, 9> kInjectionStates = {
+    InjectionState::kIdle,     InjectionState::kApproach,  InjectionState::kContact,
+    InjectionState::kIndent,   InjectionState::kPunctured, InjectionState::kInject,
+    InjectionState::kWithdraw, InjectionState::kFault,     InjectionState::kAspirate};
 
 /// Events: detected (touch, lost, puncture, injected, out), decided (start, indent, inject,
 /// withdraw) or failures.
@@ -19,7 +20,8 @@ enum class InjectionEvent {
   kTouch,     ///< force along the pipette above the noise
   kLost,      ///< the touch was noise
   kIndent,    ///< the needle goes into the cell, or shall
-  kPuncture,  ///< the force fell suddenly while the needle advanced
+  kAspirate,  ///< the needle rests and draws the membrane in, or shall
+  kPuncture,  ///< the force fell suddenly while the needle advanced, or the membrane broke by suction
   kInject,    ///< the injector works, or shall
   kInjected,  ///< it has finished
   kWithdraw,  ///< the needle goes back, or shall
@@ -40,13 +42,14 @@ std::optional<InjectionState> injectionStateOf(const std::string& name);
 ///     approach  .         contact  .         .       .          .       .          withdraw  .
 ///     contact   .         .        approach  indent  punctured  .       .          withdraw  .
 ///     indent    .         .        .         .       punctured  .       .          withdraw  .
+///     aspirate  .         .        .         indent  punctured  .       .          withdraw  .
 ///     punctured .         .        .         indent  punctured  inject  .          withdraw  .
 ///     inject    .         .        .         .       .          .       punctured  withdraw  .
 ///     withdraw  .         contact  .         .       .          .       .          withdraw  idle
 ///     fault     .         .        .         .       .          .       .          .         .
 ///
-/// In every state, fail leads to fault and reset to idle. punctured -> indent is for the next
-/// layer, withdraw -> contact for a hand that reverses.
+/// aspirate leads from indent to aspirate. In every state, fail leads to fault and reset to idle. punctured -> indent
+/// is for the next layer, withdraw -> contact for a hand that reverses.
 std::optional<InjectionState> after(InjectionState state, InjectionEvent event);
 
 }  // namespace microinjection

@@ -46,6 +46,7 @@ void NeedleMonitor::rearm() {
 
 void NeedleMonitor::skip() {
   travel_.reset();
+  reading_.reset();
   if (puncture_) puncture_->reset();
 }
 
@@ -64,6 +65,7 @@ void NeedleMonitor::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis
     puncture_.emplace(noise_, config_.puncture_drop, config_.puncture_false_rate, config_.puncture_pause);
     return;
   }
+  reading_ = axial - offset();
   peak_ = std::max(peak_, std::abs(axial - offset()));
   peak_mean_force_ = std::max(peak_mean_force_, puncture_->meanForce(kCrest));
   const double travel = -tip.dot(axis);
@@ -84,6 +86,7 @@ void NeedleMonitor::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis
 
 void NeedleMonitor::move(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis) {
   punctured_ = false;
+  reading_.reset();
   ++moves_;
   if (puncture_) puncture_->wait();
   follow(tip, axis);

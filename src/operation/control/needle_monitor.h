@@ -45,6 +45,9 @@ class NeedleMonitor {
   double force() const;                       ///< N, along the pipette above the offset, smoothed
   double promptForce() const;                 ///< N, the same of the last few samples
   double peakForce() const { return peak_; }  ///< N, largest magnitude along the pipette
+  /// N, along the pipette above the offset, if the last step had a reading.
+  const std::optional<double>& reading() const { return reading_; }
+  double noise() const { return noise_.deviation(); }  ///< N, standard deviation of a reading; @pre ready()
   bool touched() const { return contact_point_.has_value(); }
   double depth() const {
     return depth_;
@@ -74,9 +77,10 @@ class NeedleMonitor {
   std::optional<double> travel_;                  ///< m, of the tip into the cell, at the last sample
   std::optional<bool> confirmed_;
   int confirmation_samples_ = 0;
-  int moves_ = 0;                ///< since the last step
-  double stride_ = 1;            ///< steps and moves for each step, a recent mean
-  double confirmation_sum_ = 0;  ///< N
+  std::optional<double> reading_;  ///< N
+  int moves_ = 0;                  ///< since the last step
+  double stride_ = 1;              ///< steps and moves for each step, a recent mean
+  double confirmation_sum_ = 0;    ///< N
   double depth_ = 0, max_depth_ = 0;
   double peak_ = 0, peak_mean_force_ = 0, force_before_ = 0;
   bool punctured_ = false;

@@ -28,8 +28,8 @@ double shareOf(const TrainingMeasure& measure) {
 }
 
 bool inCell(InjectionState state) {
-  return state == InjectionState::kContact || state == InjectionState::kIndent || state == InjectionState::kPunctured ||
-         state == InjectionState::kInject;
+  return state == InjectionState::kContact || state == InjectionState::kIndent || state == InjectionState::kAspirate ||
+         state == InjectionState::kPunctured || state == InjectionState::kInject;
 }
 
 std::string contentOf(const std::string& path) {

@@ -3,7 +3,9 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <map>
 #include <memory>
+#include <string>
 
 #include "base/errors.h"
 #include "cell/family/family_cell.h"
@@ -12,6 +14,7 @@
 #include "python/bindings/module.h"
 #include "session/package_folder.h"
 #include "trial/hand_trial.h"
+#include "trial/suction_trial.h"
 
 namespace microinjection {
 
@@ -29,6 +32,42 @@ const TrialCell& trialCell() {
     return TrialCell{scene, member->data, packageFolder() + "/urdf/rig.urdf"};
   }();
   return cell;
+}
+
+/// The tongue of a bore in a cell of any size, over the bore's radius: solved once in a process.
+const BoreTongue& trialTongue() {
+  static const BoreTongue tongue = [] {
+    Scene scene = trialCell().scene;
+    scene.needle.bore_radius = 0.85 * scene.needle.tip.radius;
+    return solveBoreTongue(scene);
+  }();
+  return tongue;
+}
+
+py::dict suctionTrial(int seed, const std::string& witnesses) {
+  using Witnesses = SuctionTrial::Witnesses;
+  const std::map<std::string, Witnesses> all = {
+      {"both", Witnesses::kBoth}, {"force", Witnesses::kForce}, {"image", Witnesses::kImage}};
+  const auto found = all.find(witnesses);
+  if (found == all.end()) throw ConfigError("witnesses: must be both, force or image");
+  const SuctionTrial trial = [&] {
+    py::gil_scoped_release release;
+    return SuctionTrial::run(trialCell(), trialTongue(), seed, found->second);
+  }();
+  py::dict result;
+  result["breaks"] = trial.breaks;
+  result["broken"] = trial.truth.punctures > 0;
+  result["broken_by_suction"] = trial.truth.broken_by_suction;
+  result["detected"] = trial.result.punctures > 0;
+  result["outcome"] = toText(trial.result.outcome);
+  result["reason"] = trial.result.reason;
+  result["suction_Pa"] = trial.result.break_suction;
+  result["latency_s"] = trial.truth.suction_latency.value_or(NAN);
+  result["drawn_too_much_m3"] = trial.truth.drawn_too_much;
+  result["false_alarms"] = trial.result.false_breaks;
+  result["modulus_Pa"] = trial.of.cell.young_modulus;
+  result["bore_radius_m"] = trial.of.cell.bore_radius;
+  return result;
 }
 
 py::object faultOf(const HandTrial& trial) {
@@ -87,6 +126,7 @@ void bindTrial(py::module_& module) {
         result["measures"] = measures;
         return result;
       });
+  module.def("suction_trial", &suctionTrial, py::arg("seed"), py::kw_only(), py::arg("witnesses") = "both");
   py::list names;
   for (const char* name : HandTrial::kObservation) names.append(name);
   module.attr("trial_observation") = py::tuple(names);

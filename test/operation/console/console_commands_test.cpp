@@ -25,7 +25,11 @@ SessionView viewOf(const InjectionController& controller, const InjectionControl
   view.volume = controller.injectedVolume();
   view.hold_reason = controller.holdReason();
   view.notice = controller.notice();
-  view.settings = {config.mode, config.goal.pulse.duration > 0, config.guards.force_limit, config.guards.depth_limit,
+  view.settings = {config.mode,
+                   config.goal.pulse.duration > 0,
+                   config.goal.break_by != BreakBy::kForce,
+                   config.guards.force_limit,
+                   config.guards.depth_limit,
                    ""};
   return view;
 }

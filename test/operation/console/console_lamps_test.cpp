@@ -22,12 +22,12 @@ TEST(StepStrip, LightsThePresentStepAndRemembersThePassedOnes) {
                                      InjectionState::kPunctured, InjectionState::kInject, InjectionState::kPunctured}) {
     strip.update(state);
   }
-  const std::array<Mark, 7> injected = {kAhead, kPassed, kPassed, kPassed, kPresent, kPassed, kAhead};
+  const std::array<Mark, 8> injected = {kAhead, kPassed, kPassed, kPassed, kAhead, kPresent, kPassed, kAhead};
   EXPECT_EQ(strip.marks(), injected);
   strip.update(InjectionState::kWithdraw);
-  EXPECT_EQ(strip.marks()[6], kPresent);
+  EXPECT_EQ(strip.marks()[7], kPresent);
   strip.update(InjectionState::kIdle);
-  const std::array<Mark, 7> idle = {kPresent, kAhead, kAhead, kAhead, kAhead, kAhead, kAhead};
+  const std::array<Mark, 8> idle = {kPresent, kAhead, kAhead, kAhead, kAhead, kAhead, kAhead, kAhead};
   EXPECT_EQ(strip.marks(), idle);
 }
 

@@ -20,6 +20,8 @@ const std::map<std::pair<std::string, std::string>, std::string> kExpected = {
     {{"punctured", "withdraw"}, "withdraw"},  {{"inject", "injected"}, "punctured"},
     {{"inject", "withdraw"}, "withdraw"},     {{"withdraw", "touch"}, "contact"},
     {{"withdraw", "withdraw"}, "withdraw"},   {{"withdraw", "out"}, "idle"},
+    {{"indent", "aspirate"}, "aspirate"},     {{"aspirate", "puncture"}, "punctured"},
+    {{"aspirate", "indent"}, "indent"},       {{"aspirate", "withdraw"}, "withdraw"},
 };
 
 const std::pair<InjectionEvent, const char*> kEvents[] = {
@@ -28,7 +30,7 @@ const std::pair<InjectionEvent, const char*> kEvents[] = {
     {InjectionEvent::kPuncture, "puncture"}, {InjectionEvent::kInject, "inject"},
     {InjectionEvent::kInjected, "injected"}, {InjectionEvent::kWithdraw, "withdraw"},
     {InjectionEvent::kOut, "out"},           {InjectionEvent::kFail, "fail"},
-    {InjectionEvent::kReset, "reset"},
+    {InjectionEvent::kReset, "reset"},       {InjectionEvent::kAspirate, "aspirate"},
 };
 
 TEST(InjectionState, EachEventInEachState) {
@@ -46,7 +48,7 @@ TEST(InjectionState, EachEventInEachState) {
 }
 
 TEST(InjectionState, FromEveryStateInTheCellThereIsAWayOut) {
-  for (const char* name : {"approach", "contact", "indent", "punctured", "inject", "withdraw"}) {
+  for (const char* name : {"approach", "contact", "indent", "aspirate", "punctured", "inject", "withdraw"}) {
     for (const InjectionState state : kInjectionStates) {
       if (toText(state) != std::string(name)) continue;
       const auto next = after(state, InjectionEvent::kWithdraw);

@@ -20,6 +20,7 @@ struct SpringRig {
   double puncture_force = 1e-6;  ///< N
   double second_force = 0;       ///< N, of a membrane behind that; 0: there is none
   double second_gap = 1e-6;      ///< m, of it before the tip when the first fails
+  double break_suction = 0;      ///< Pa, at which the membrane under the tip breaks; 0: it does not
   double left = 0.3;             ///< share of the force that is left when it is through
   double noise = 10e-9;          ///< N rms, along the pipette
   double lag = 2e-3;             ///< s
@@ -29,10 +30,11 @@ struct SpringRig {
 
   Eigen::Vector3d tip = Eigen::Vector3d(0, 0, 40e-6);
   bool punctured = false, second_punctured = false;
-  double punctured_at = 0;   ///< m, depth
-  double volume = 0;         ///< m^3
-  double deepest = 0;        ///< m, of the tip below the surface
-  double largest_force = 0;  ///< N, without noise
+  double punctured_at = 0;     ///< m, depth
+  double volume = 0;           ///< m^3
+  double deepest = 0;          ///< m, of the tip below the surface
+  double largest_force = 0;    ///< N, without noise
+  double lowest_pressure = 0;  ///< Pa, of a suction
   InjectionController::Input input;
   std::mt19937 random{1};
   std::optional<Eigen::Vector3d> setpoint;
@@ -58,7 +60,13 @@ struct SpringRig {
     input.needle = tip;
     input.force = Eigen::Vector3d(0, 0, force + (noise > 0 ? deviate(random) : 0));
     const bool asked = controller.pulse() && injector_works;
-    if (asked) volume += 1e-15 * kStep;
+    const double pressure = asked ? controller.pulse()->pressure : 0;
+    lowest_pressure = std::min(lowest_pressure, pressure);
+    if (pressure > 0) volume += 1e-15 * kStep;
+    if (break_suction > 0 && pressure <= -break_suction && depth() > 0 && !punctured) {
+      punctured = true;
+      punctured_at = depth();
+    }
     input.injector = InjectorReport{asked && volume < full, volume, volume >= full};
     if (!needle_tells) input.needle.reset();
     if (!force_tells) input.force.reset();
