@@ -12,6 +12,7 @@ constexpr int kMotionIterations = 60;  // Newton's, of a solution
 constexpr int kMotionHalvings = 40;    // of Newton's step
 constexpr int kLargestDivision = 64;   // of a step in which a tool jumps
 constexpr double kLongestShift = 0.2;  // of a tool in a part of a step, over the cell's radius
+constexpr double kLevels = 0.1;        // slope of the energy at a guess of the motion, over that at rest
 constexpr double kLimitAgrees = 1e-3;  // of Coulomb's limits of two solutions
 
 /// |slide| and its first two derivatives, rounded below h: y^2/h - y^3/(3 h^2), then y - h/3.
@@ -353,15 +354,21 @@ double CellMotion::gather(const Motion& motion, bool first) {
 
 void CellMotion::minimise(double duration, Motion& motion) {
   Potential here = increment(motion);
-  // The start is the lowest of: the last solution of this step, no motion (so that the energy is bounded), motion with
-  // the mouth, and that of the step before.
+  const Potential still = motion.isZero(0) ? here : increment(Motion::Zero());
+  if (still.energy < here.energy) {
+    here = still;  // so that the energy is bounded
+    motion.setZero();
+  }
+  // Motion with the mouth, or that of the step before, is mostly a better start. But where the energy still falls
+  // steeply ahead, a barrier may lie in between: that of a seal which opens, for example.
   Motion carried = Motion::Zero(), onward;
   if (mouth_) carried.head<3>() = shiftAt(before_.mouth, now_.mouth, start_);
   onward << state_.velocity * duration, state_.angular_velocity * config_.radius * duration;
-  for (const Motion& start : {Motion(Motion::Zero()), carried, onward}) {
-    if (start == motion) continue;
+  for (const Motion& start : {carried, onward}) {
+    if (start.isZero(0)) continue;
     const Potential there = increment(start);
-    if (there.energy >= here.energy) continue;
+    const bool levels = there.gradient.dot(start) >= kLevels * std::min(still.gradient.dot(start), 0.0);
+    if (!levels || there.energy >= here.energy) continue;
     here = there;
     motion = start;
   }

@@ -81,15 +81,16 @@ struct CellMotionState {
 
 /// Motion of a cell as a rigid body in its medium: held, loose, picked up, dropped, rolled by the needle, lost.
 ///
-/// Inertia is negligible (a Reynolds number of 1e-3 at 30 um/s), so the velocity follows from the forces. A step of
-/// duration h is backward Euler's, as the minimum over the cell's motion z = (translation, R rotation) of
+/// Inertia is negligible (a Reynolds number of 2e-3 at 30 um/s), so the velocity follows from the forces. Only the snap
+/// onto a lip, at 0.1 m/s over a micrometre, is faster than that; it takes less than a step. A step of duration h is
+/// backward Euler's, as the minimum over the cell's motion z = (translation, R rotation) of
 ///
 ///     U(x + dx) + z' M z / (2 h) + sum over contacts of  mu N_i f(|slide_i|) - force dx - torque rotation
 ///
 /// U: weight, dish and needle (Hertz; the needle's end as a sphere of its edge's radius), LipContact, LipSuction.
 /// M: WallResistance at the gap of the step's begin. f: |slide|, rounded below creep_speed * h (Li et al., "Incremental
 /// potential contact", ACM Trans. Graph. 39 (2020) 49). N_i and the normals are of the previous solution of the same
-/// step; three or four solutions agree. The alternatives were explicit steps, which the contacts' stiffness (1 N/m
+/// step, until two agree. The alternatives were explicit steps, which the contacts' stiffness (1 N/m
 /// against a drag of 1e-6 N s/m) limits to microseconds, and Newton's method on the complementarity problem, which may
 /// fail. A minimum is always found, and bounds the energy: what the cell gains the tools have lent. Hence no step of a
 /// tool makes it unstable, however long; one longer than a fifth of the radius is cut so that a tip does not jump

@@ -253,27 +253,29 @@ TEST(CellMotion, ANeedleBesideTheAxisTurnsTheCellAtTheRigidSpheresLimit) {
 TEST(CellMotion, RollsBetweenANeedleAndTheDishWithoutSlip) {
   CellMotionConfig config;
   config.friction.needle = 0.3;
-  CellMotionInput input;
-  const Vector3d lying(0, 1, 0);
-  // From behind the top to beyond it, since the needle's shaft goes twice as far as the cell.
   const double travel = 6e-6, speed = 5e-6;
-  input.needle = toolAlong(lying, {-travel / 4, -500e-6, 2 * config.radius + 3e-6});
-  CellMotion motion = loose(config, {0, 0, config.radius}, input);
-  input.needle->position.z() -= 0.5e-6;
-  stepsOf(motion, input, 50);
-  const Vector3d begin = motion.state().position;
-  const Eigen::AngleAxisd before(motion.state().orientation);
-  const int count = static_cast<int>(std::lround(travel / speed / 1e-3));
-  for (int i = 0; i < count; ++i) {
-    input.needle->position.x() += 1e-3 * speed;
-    motion.step(1e-3, input);
+  for (const double turn : {0.0, 1.1, M_PI / 2}) {
+    const Vector3d ahead(std::cos(turn), std::sin(turn), 0), lying = Vector3d::UnitZ().cross(ahead);
+    CellMotionInput input;
+    // From behind the top to beyond it, since the needle's shaft goes twice as far as the cell.
+    const Vector3d top(0, 0, 2 * config.radius + 3e-6);
+    input.needle = toolAlong(lying, top - travel / 4 * ahead - 500e-6 * lying);
+    CellMotion motion = loose(config, {0, 0, config.radius}, input);
+    input.needle->position.z() -= 0.5e-6;
+    const CellMotionState before = stepsOf(motion, input, 50);
+    const int count = static_cast<int>(std::lround(travel / speed / 1e-3));
+    for (int i = 0; i < count; ++i) {
+      input.needle->position += 1e-3 * speed * ahead;
+      motion.step(1e-3, input);
+    }
+    EXPECT_FALSE(motion.state().dish.slips);
+    EXPECT_FALSE(motion.state().needle.slips);
+    // The cell goes half as far as the shaft, and turns about what lies across, forwards.
+    EXPECT_NEAR((motion.state().position - before.position).dot(ahead) / (travel / 2), 1, 0.02);
+    EXPECT_NEAR(motion.state().angular_velocity.dot(lying) / (speed / (2 * config.radius)), 1, 0.02);
+    const Eigen::AngleAxisd turned(motion.state().orientation * before.orientation.inverse());
+    EXPECT_NEAR(turned.angle() * turned.axis().dot(lying) / (travel / (2 * config.radius)), 1, 0.02);
   }
-  EXPECT_FALSE(motion.state().dish.slips);
-  EXPECT_FALSE(motion.state().needle.slips);
-  EXPECT_NEAR((motion.state().position - begin).x() / (travel / 2), 1, 0.02);  // the cell goes half as far
-  EXPECT_NEAR(motion.state().angular_velocity.y() / (speed / (2 * config.radius)), 1, 0.02);
-  const Eigen::AngleAxisd turned(motion.state().orientation * before.inverse());
-  EXPECT_NEAR(turned.angle() * turned.axis().y() / (travel / (2 * config.radius)), 1, 0.02);
 }
 
 TEST(CellMotion, ASlipperyNeedlePushesItAlong) {
