@@ -200,6 +200,27 @@ TEST(CellMotion, TheSealOpensAtHalfOfTheForceThatTipsARigidCell) {
   EXPECT_NEAR(comes_off, 1, 0.02);
 }
 
+TEST(CellMotion, AnOpenSealPullsAsMuchAsItsGapLets) {
+  CellMotionConfig config = farFromTheDish();
+  config.density_difference = 0;
+  config.friction.lip = 0;
+  CellMotionInput input;
+  CellMotion motion = held(config, input, -500);
+  input.force = {0, 0.72 * motion.limits(-500).sideways(), 0};
+  const CellMotionState& state = stepsOf(motion, input, 2000);
+  ASSERT_EQ(state.mode, CellMode::kHeld);
+  ASSERT_FALSE(state.sealed);
+  EXPECT_GT(state.leak, 0);
+  EXPECT_LT(state.suction, 0.998 * motion.limits(-500).suction());
+  // What the gap all round the lip lets act is what the step used, about the mean gap.
+  const LipSuction suction(holdingMouth(), config);
+  const LipContact lip(holdingMouth(), config.radius, config.contactModulus());
+  EXPECT_NEAR(state.suction, 500 * suction.area() * suction.share(lip.leakingGap(input.mouth.toOwn(state.position)), 0),
+              1e-16);
+  const Vector3d to_middle = (Vector3d(-suction.middle(), 0, 0) - state.position).normalized();
+  EXPECT_LT((state.lip.force + state.suction * to_middle + input.force).norm(), 3e-4 * state.suction);
+}
+
 TEST(CellMotion, TurnsInItsSeatAtTheLimitOfFriction) {
   CellMotionConfig config = farFromTheDish();
   config.density_difference = 0;
