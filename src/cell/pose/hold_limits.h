@@ -1,0 +1,46 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace microinjection {
+
+/// What a rigid sphere that suction holds to a lip can bear, quasi-statically. The lip's circle has the radius s =
+/// R sin(alpha); suction draws the sphere to its middle with F = p pi s^2. The contact's normals pass through the
+/// sphere's centre, and their sum N = F / cos(alpha) needs no friction. Limits of a load through the centre:
+///
+/// - along the tube: F. Friction adds nothing, since the contact is gone.
+/// - across it: the push over the lip grows as 1 + k cos(phi) with an even foundation, and the seal opens on one side
+///   where k = 1, at F tan(alpha) / 2. The sphere tips over the lip's far point when all of N is there, at F
+///   tan(alpha); tipping is rolling about this point, so friction does not resist it.
+///
+/// Of a load beside the centre, friction (Coulomb's, mu) also bears the moment. Turning in its seat about an axis
+/// across the tube, the sphere slides at sqrt(cos^2(alpha) + sin^2(alpha) cos^2(phi)), whose mean over the circle is 2
+/// E(sin(alpha)) / pi, E the complete elliptic integral of the second kind. So friction bears the moment mu N R 2 E /
+/// pi, and mu N s about the tube.
+///
+/// Each limit is exact when the others are far; friction that already bears a moment in one direction bears less in
+/// another.
+class HoldLimits {
+ public:
+  /// @param suction N, F >= 0. @param seal_radius m, s, below @param radius m, the sphere's. @param friction mu
+  HoldLimits(double suction, double seal_radius, double radius, double friction);
+
+  double suction() const { return suction_; }  ///< N, the largest pull along the tube
+  double opening() const;                      ///< N, across the tube through the centre: the seal opens on one side
+  double sideways() const;                     ///< N, so that the cell comes off over the lip
+  double turning() const;                      ///< N m, about an axis across the tube: the cell turns in its seat
+  double spinning() const;                     ///< N m, about the tube
+  /// N, across the tube at the sphere's pole opposite to the mouth, where a needle touches it: the first that happens
+  /// of turning and tipping.
+  double atPole() const;
+
+  /// N, the largest force of this direction (any length) at this point, m: the first limit of pulling off, tipping
+  /// over the lip, turning and spinning. Infinite when the force only presses the cell into the lip. Both in a frame at
+  /// the sphere's centre whose z points along the tube into the pipette.
+  double largest(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) const;
+
+ private:
+  double suction_, seal_, radius_, friction_, cosine_;
+};
+
+}  // namespace microinjection

@@ -1,0 +1,62 @@
+#pragma once
+
+#include "cell/contact/pipette_mouth.h"
+#include "cell/pose/cell_motion_config.h"
+
+namespace microinjection {
+
+/// Pressure and flow of a holding pipette whose mouth a sphere closes, or nearly so.
+///
+/// The flow Q passes three resistances in series, mu the viscosity:
+///
+///     the gap about the lip, of even height g, between sphere and edge:  (9/4) mu sqrt(2 c) / (s g^(5/2)),
+///       1 / c = 1 / R + 1 / e                                            s: radius of the circle of first touch
+///     the entry of the bore, of radius a:                                3 mu / (2 a^3)      (half of Sampson's)
+///     the bore, of length L:                                             8 mu L / (pi a^4)   (Poiseuille)
+///
+/// The first is Reynolds' equation in the film h = g + x^2 / (2 c) across the lip: the pressure falls by 12 mu q
+/// integral of dx / h^3 = 12 mu q (3 pi / 8) sqrt(2 c) g^(-5/2), where q = Q / (2 pi s). The other two add up in series
+/// within a few percent (Dagan, Weinbaum and Pfeffer, J. Fluid Mech. 115 (1982) 505). A notch of the lip, a hole of a
+/// given area through the wall 2 e, is parallel to the gap: a round one's 3 mu / r^3 + 16 mu e / (pi r^4).
+///
+/// So the sphere feels the share of the pressure, sigma, that falls over the gap, on the circle that the lip closes:
+/// the force p pi s^2 sigma(g). It acts from the sphere's centre towards the middle of that circle, because a pressure
+/// on a cap of a sphere has no moment about the centre. With g = distance of the two less that at touch, it has a
+/// potential, p pi s^2 S(g), S the integral of sigma.
+///
+///     sigma = closed / (1 + (g / g0)^(5/2))     closed < 1 with a notch
+///
+/// A gap as high as s holds no film, and the pressure in front of a wide gap is that of the bath. So sigma is shifted
+/// by its value there, to end there.
+///
+/// What flows is drawn from all sides. In the sink flow Q / (4 pi r^2) Faxen's correction vanishes, since it is
+/// irrotational, so that the drag on the sphere is Stokes' and has a potential, too.
+class LipSuction {
+ public:
+  LipSuction(const PipetteMouth& mouth, const CellMotionConfig& config);
+
+  bool swallows() const { return swallows_; }  ///< whether the bore is wider than the sphere
+  double sealRadius() const { return seal_; }  ///< m, s; of a bore that swallows, the sphere's
+  double area() const;                         ///< m^2, pi s^2
+  double middle() const { return middle_; }    ///< m, of the circle behind the lip's crest, along the tube
+  double touch() const { return touch_; }      ///< m, of the sphere's centre from the middle at touch
+
+  /// A notch's conductance, m^3/(Pa s). @param area m^2, >= 0
+  double notchConductance(double area) const;
+  /// Share of the pressure that acts on the sphere, at a gap (m, >= 0) and a notch's conductance.
+  double share(double gap, double notch) const;
+  /// m, integral of share() from 0 to the gap; for a negative gap its linear continuation.
+  double shareIntegral(double gap, double notch) const;
+  /// m^3/s at a pressure of 1 Pa, into the bath; the share is that of share().
+  double flow(double share) const { return (1 - share) / series_; }
+
+ private:
+  double scale(double notch) const;  ///< m, g0
+
+  bool swallows_;
+  double seal_, middle_, touch_, viscosity_, edge_;
+  double gap_coefficient_;  ///< Pa s m^(-1/2): the gap's resistance times g^(5/2)
+  double series_;           ///< Pa s/m^3, of entry and bore
+};
+
+}  // namespace microinjection

@@ -1,0 +1,74 @@
+#include "cell/pose/lip_suction.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "cell/pose/motion_scene.h"
+
+namespace microinjection {
+namespace {
+
+/// Pressure over flow of the film between a sphere and the lip's edge, by sums over its true height.
+double filmResistance(const LipSuction& suction, const CellMotionConfig& config, double gap) {
+  const double step = 1e-9, width = 4e-6, r = config.radius, e = kLipEdgeRadius;
+  double sum = 0;
+  for (double x = -width; x <= width; x += step) {
+    const double height = gap + r - std::sqrt(r * r - x * x) + e - std::sqrt(e * e - x * x);
+    sum += 12 * config.viscosity * step / (height * height * height);
+  }
+  return sum / (2 * M_PI * suction.sealRadius());
+}
+
+TEST(LipSuction, SharesThePressureBetweenFilmAndBore) {
+  const CellMotionConfig config;
+  const LipSuction suction(holdingMouth(), config);
+  const double a = kBoreRadius;
+  const double bore =
+      8 * config.viscosity * config.bore_length / (M_PI * a * a * a * a) + 1.5 * config.viscosity / (a * a * a);
+  for (const double gap : {0.05e-6, 0.2e-6, 0.5e-6}) {
+    const double film = filmResistance(suction, config, gap);
+    EXPECT_NEAR(1 - suction.share(gap, 0), bore / (film + bore), 0.03 * bore / (film + bore)) << gap;
+    EXPECT_NEAR(suction.flow(suction.share(gap, 0)), 1 / (film + bore), 0.03 / (film + bore));
+  }
+  EXPECT_EQ(suction.share(0, 0), 1);
+  EXPECT_NEAR(suction.flow(suction.share(1e-3, 0)), 1 / bore, 1e-6 / bore);
+}
+
+TEST(LipSuction, ShareIsTheIntegralsDerivative) {
+  const LipSuction suction(holdingMouth(), {});
+  for (const double notch : {0.0, suction.notchConductance(20e-12)}) {
+    for (double gap = 1e-8; gap < 1e-3; gap *= 1.7) {
+      const double h = 1e-4 * gap;
+      const double slope = (suction.shareIntegral(gap + h, notch) - suction.shareIntegral(gap - h, notch)) / (2 * h);
+      EXPECT_NEAR(slope, suction.share(gap, notch), 1e-6) << gap;
+    }
+    EXPECT_EQ(suction.shareIntegral(0, notch), 0);
+    EXPECT_NEAR(suction.shareIntegral(-1e-7, notch), -1e-7 * suction.share(0, notch), 1e-20);
+  }
+}
+
+TEST(LipSuction, ANotchLeaks) {
+  const CellMotionConfig config;
+  const LipSuction suction(holdingMouth(), config);
+  EXPECT_EQ(suction.notchConductance(0), 0);
+  double last = 1;
+  for (const double area : {1e-12, 10e-12, 50e-12}) {
+    const double share = suction.share(0, suction.notchConductance(area));
+    EXPECT_LT(share, last);
+    last = share;
+  }
+  // A hole of the bore's own radius through a wall of 10 um: all resistances known.
+  const double a = kBoreRadius, mu = config.viscosity, four = M_PI * a * a * a * a;
+  const double bore = 8 * mu * config.bore_length / four + 1.5 * mu / (a * a * a);
+  const double hole = 3 * mu / (a * a * a) + 8 * mu * 2 * kLipEdgeRadius / four;
+  EXPECT_NEAR(suction.share(0, suction.notchConductance(M_PI * a * a)), hole / (hole + bore), 1e-9);
+}
+
+TEST(LipSuction, KnowsABoreThatIsTooWide) {
+  EXPECT_FALSE(LipSuction(holdingMouth(), {}).swallows());
+  EXPECT_TRUE(LipSuction(holdingMouth(50e-6), {}).swallows());
+}
+
+}  // namespace
+}  // namespace microinjection
