@@ -3,10 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/errors.h"
-#include "hardware/injector/injector_registry.h"
 #include "hardware/injector/serial_injector.h"
-#include "hardware/serial/emulated_wire.h"
 #include "nodes/runtime/node_parameters.h"
 
 namespace microinjection {
@@ -19,23 +16,16 @@ const char* const InjectorNode::kHelp =
 InjectorNode::Parameters InjectorNode::Parameters::read(const Bus& bus) {
   Parameters parameters;
   ConfigReader reader = parameterReader(bus);
-  reader.choice("source", parameters.source, {"simulated", "serial"});
   reader.number("rate", parameters.rate, Range::closed(20, 5000));
   reader.number("command_timeout", parameters.command_timeout, Range::positive());
   reader.number("pulse_timeout", parameters.pulse_timeout, Range::positive());
   reader.number("clog_factor", parameters.clog_factor, {1, INFINITY, false, true});
   parameters.model = InjectorModelConfig::read(reader);
-  if (parameters.source == "serial" || reader.has("serial")) {
-    ConfigReader serial = reader.section("serial");
-    parameters.port = SerialPortConfig::read(serial, 9600);
-    parameters.protocol = InjectorProtocol::read(serial);
-    const InjectorProtocol& protocol = parameters.protocol;
-    const std::string refusal = protocol.balance.empty() ? "" : protocol.balanceRefusal(parameters.model.balance);
-    if (!refusal.empty()) reader.error("balance", refusal);
-  }
-  std::vector<std::string> emulators{"none"};
-  for (const Injector& injector : injectors()) emulators.push_back(injector.name);
-  reader.choice("emulated", parameters.emulated, emulators);
+  reader.number("draw_limit", parameters.model.draw_limit, Range::nonNegative());
+  parameters.device = PressureDevice::read(reader);
+  const InjectorProtocol& protocol = parameters.device.protocol;
+  const std::string refusal = protocol.balance.empty() ? "" : protocol.balanceRefusal(parameters.model.balance);
+  if (!refusal.empty()) reader.error("balance", refusal);
   reader.finish();
   return parameters;
 }
@@ -67,21 +57,10 @@ InjectorNode::InjectorNode(Bus& bus)
   cycle_.onStep([this](const Cycle::Tick& tick) { step(tick); });
 }
 
-std::unique_ptr<Wire> InjectorNode::makeWire() const {
-  for (const Injector& injector : injectors()) {
-    if (injector.name != parameters_.emulated) continue;
-    return std::make_unique<EmulatedWire>(injector.make_emulator(), parameters_.port.baud);
-  }
-  if (cycle_.bus().isVirtual()) {
-    throw ConfigError("source = serial: the injector on " + parameters_.port.path +
-                      " cannot run in virtual time, it injects on while time stands");
-  }
-  return std::make_unique<SerialPort>(parameters_.port);
-}
-
 void InjectorNode::makeDevice() {
-  if (parameters_.source == "serial") {
-    device_ = std::make_unique<SerialInjector>(makeWire(), parameters_.protocol, parameters_.model);
+  if (parameters_.device.isSerial()) {
+    device_ = std::make_unique<SerialInjector>(parameters_.device.makeWire(cycle_.bus()), parameters_.device.protocol,
+                                               parameters_.model);
     return;
   }
   auto model = std::make_unique<InjectorModel>(parameters_.model);
@@ -97,10 +76,7 @@ void InjectorNode::makeDevice() {
 }
 
 std::string InjectorNode::stampError(const std_msgs::Header& header) const {
-  if (header.stamp.isZero()) return "its stamp is 0";
-  const double age = secondsBetween(header.stamp, cycle_.bus().now());
-  if (age > parameters_.command_timeout) return "it is stale";
-  return age < -parameters_.command_timeout ? "it is from the future" : "";
+  return pressureStampError(header, cycle_.bus().now(), parameters_.command_timeout);
 }
 
 void InjectorNode::onPulse(const cell_microinjection::InjectionPulse& message) {
@@ -158,6 +134,9 @@ void InjectorNode::step(const Cycle::Tick& tick) {
   state.pressure = reading.pressure;
   state.flow = reading.flow;
   state.volume = reading.volume;
+  state.drawn = reading.drawn;
+  state.interface = reading.interface;
+  state.limited = reading.limited;
   state.busy = reading.busy;
   state.last_id = reading.last_id;
   state.pulses = reading.pulses;
@@ -175,6 +154,8 @@ void InjectorNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) c
     status.summary(DiagnosticStatus::WARN, "the tip is clogged on request");
   } else if (!log_.refusal().empty()) {
     status.summary(DiagnosticStatus::WARN, log_.refusal());
+  } else if (reading.limited) {
+    status.summary(DiagnosticStatus::WARN, "draw_limit is reached: nothing more is drawn in");
   } else if (!reading.busy && reading.flow < 0) {
     status.summary(DiagnosticStatus::WARN, "flows back: the balance pressure is too low");
   } else {

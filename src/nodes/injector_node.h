@@ -11,10 +11,8 @@
 #include "cell_microinjection/InjectorState.h"
 #include "cell_microinjection/StringStamped.h"
 #include "hardware/injector/injector_model.h"
-#include "hardware/injector/injector_protocol.h"
 #include "hardware/injector/pulse_ids.h"
-#include "hardware/serial/serial_port.h"
-#include "hardware/serial/wire.h"
+#include "nodes/pressure/pressure_device.h"
 #include "nodes/runtime/command_log.h"
 #include "nodes/runtime/cycle.h"
 
@@ -41,19 +39,15 @@ class InjectorNode {
 
  private:
   struct Parameters {
-    std::string source = "simulated";
     double rate = 200;
     double command_timeout = 0.5;
     double pulse_timeout = 0.2;
     double clog_factor = 100;
     InjectorModelConfig model;
-    SerialPortConfig port;
-    InjectorProtocol protocol;
-    std::string emulated = "none";
+    PressureDevice device;
     static Parameters read(const Bus& bus);
   };
 
-  std::unique_ptr<Wire> makeWire() const;
   void makeDevice();
   void onPulse(const cell_microinjection::InjectionPulse& message);
   void onStop(const cell_microinjection::StringStamped& message);

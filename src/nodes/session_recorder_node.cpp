@@ -12,6 +12,7 @@
 
 #include "base/atomic_file.h"
 #include "base/worker_processes.h"
+#include "cell_microinjection/HolderState.h"
 #include "cell_microinjection/OperatingState.h"
 #include "nodes/recording/local_time.h"
 #include "nodes/runtime/conversions.h"
@@ -57,6 +58,7 @@ const char* const SessionRecorderNode::kHelp =
     "  ~row_period     s, default 0.005\n"
     "  ~hand           record a haptic bridge, default true\n"
     "  ~injector       record an injector, default true\n"
+    "  ~holder         record the holder's pressure line in the bag, default false\n"
     "  ~bag            write session.bag, default true\n"
     "  ~training/...   score the session, write training.yaml and training.png and extend the history:\n"
     "                  operator (name), history (CSV file) and the keys of config/training.yaml; default: no score\n"
@@ -69,6 +71,7 @@ SessionRecorderNode::Parameters SessionRecorderNode::Parameters::read(const Bus&
   reader.number("row_period", parameters.row_period, Range::positive());
   reader.boolean("hand", parameters.hand);
   reader.boolean("injector", parameters.injector);
+  reader.boolean("holder", parameters.holder);
   reader.boolean("bag", parameters.bag);
   reader.boolean("end_when_done", parameters.end_when_done);
   if (reader.has("training")) {
@@ -173,6 +176,7 @@ void SessionRecorderNode::recordBag(SessionBag& bag) {
   bag.record(cell_);
   bag.record(injection_);
   if (injector_) bag.record(*injector_);
+  if (parameters_.holder) bag.record<cell_microinjection::HolderState>(cycle_.bus(), "/holder/state");
   if (parameters_.hand) {
     bag.record(*hand_);
     bag.record(*clutch_);

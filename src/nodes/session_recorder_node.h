@@ -36,7 +36,8 @@ namespace microinjection {
 /// incomplete at the end, the exit status is 1.
 ///
 /// In:  /needle/measured_cp, /cell/predicted_cf, /force_sensor/measured_cf, /cell/state,
-///      /controller/injection_state, with an injector /injector/state, with a hand
+///      /controller/injection_state, with an injector /injector/state, with a
+///      holder /holder/state, with a hand
 ///      /haptic/measured_cp, /haptic/servo_cf, /haptic/clutch, /virtual_hand/phase;
 ///      /needle/setpoint_trace, /haptic/force_trace; /diagnostics, /tf, /tf_static,
 ///      /controller/operating_state
@@ -58,6 +59,7 @@ class SessionRecorderNode {
     double row_period = 0.005;
     bool hand = true;
     bool injector = true;
+    bool holder = false;
     bool bag = true;
     bool end_when_done = false;
     std::optional<TrainingConfig> training;

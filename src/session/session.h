@@ -117,6 +117,7 @@ struct Session {
   Rig rig;
   Sensor sensor;
   std::string injector = "simulated";
+  std::string holder = "none";  ///< none, sim, a name of config/injectors, emulated_NAME, serial
   Hand hand;
   Force force;
   Injection injection;

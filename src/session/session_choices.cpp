@@ -38,7 +38,9 @@ SessionChoices::SessionChoices(const std::string& package)
   };
   devices.erase(std::remove_if(devices.begin(), devices.end(), is_other), devices.end());
   rigs = withEmulated({"sim"}, devices, {kExternal});
-  injectors = withEmulated({"auto", "simulated"}, namesIn(package, "config/injectors"), {"serial", "none"});
+  const Names pressures = namesIn(package, "config/injectors");
+  injectors = withEmulated({"auto", "simulated"}, pressures, {"serial", "none"});
+  holders = withEmulated({"none", "sim"}, pressures, {"serial"});
   hands = withFirst({"virtual_hand", "none"}, namesIn(package, "config/haptic"));
   consoles = withFirst({"none"}, namesIn(package, "config/console"));
 }

@@ -29,7 +29,8 @@ class Planner {
     addRig();
     addSensor();
     addCells();
-    addInjector();
+    if (session_.injector != "none") addPressure("injector", session_.injector);
+    if (session_.holder != "none") addHolder();
     addController();
     addBridge();
     addHand();
@@ -150,17 +151,22 @@ class Planner {
     return session_.sensor.source == "none" ? session_.camera.source != "sim" : session_.sensor.source != "simulated";
   }
 
-  void addInjector() {
-    const std::string& name = session_.injector;
-    if (name == "none") return;
+  /// A node with a device of config/injectors, or a simulated one.
+  NodePlan& addPressure(const std::string& program, const std::string& name) {
     const bool is_emulated = name.rfind("emulated_", 0) == 0;
     const std::string device = is_emulated ? name.substr(9) : name;
-    NodePlan& node = addConfigured("injector");
+    NodePlan& node = addConfigured(program);
     const bool has_file = device != "simulated" && device != "serial";
     if (has_file) mergeParameters(node.parameters, load(package("config/injectors/" + device + ".yaml")));
     if (name == "emulated_femtojet") setText(node, "serial/codes/inject", kFemtojetCode);
     setText(node, "source", device == "simulated" ? "simulated" : "serial");
     setText(node, "emulated", is_emulated ? device : "none");
+    return node;
+  }
+
+  void addHolder() {
+    NodePlan& node = addPressure("holder", session_.holder == "sim" ? "simulated" : session_.holder);
+    setFlag(node, "auto_enable", session_.injection.auto_enable);
   }
 
   void addController() {
@@ -386,6 +392,7 @@ class Planner {
     setText(node, "output_dir", record.folder);
     setFlag(node, "hand", session_.hand.present());
     setFlag(node, "injector", session_.injector != "none");
+    if (session_.holder != "none") setFlag(node, "holder", true);
     setFlag(node, "bag", record.bag);
     setFlag(node, "end_when_done", record.end_when_done);
     if (record.trainee.empty()) return;

@@ -109,6 +109,7 @@ void readSessionKeys(ConfigReader& reader, const std::string& folder, SessionDra
   sensor.numbers("mounting", session.sensor.mounting);
   sensor.flag("quiet", session.sensor.quiet);
   section.choice("injector", session.injector, choices.injectors);
+  section.choice("holder", session.holder, choices.holders);
   readHand(section.section("hand"), session.hand, choices);
   LayerSection force = section.section("force");
   force.choice("controller", session.force.controller, choices.controller_forces);

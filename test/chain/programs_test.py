@@ -24,6 +24,7 @@ FOLDER = tempfile.TemporaryDirectory()
 GOOD = {  # what each node cannot do without
     "calibration": {}, "camera": {"source": "folder", "path": FOLDER.name}, "cell_estimator": CELL, "cell_simulator": CELL,
     "display": {}, "focus": {}, "force_sensor": {}, "force_watchdog": {}, "haptic_bridge": {}, "haptic_device": {"kind": "joy"},
+    "holder": {},
     "image_recorder": {"output_dir": f"{FOLDER.name}/images"}, "injection_controller": {}, "injector": {}, "keyboard_hand": {},
     "link_emulator": {}, "micromanipulator": {}, "microscope": {}, "notebook": {"file": f"{FOLDER.name}/notebook.csv"},
     "virtual_hand": {"motion": PACKAGE / "config/hand_motions/indent_and_retract.yaml"},

@@ -69,6 +69,7 @@ TEST_F(SessionTest, AcceptsEachAllowedValue) {
                                                                    {"rig.name", choices.rigs},
                                                                    {"sensor.source", choices.sensors},
                                                                    {"injector", choices.injectors},
+                                                                   {"holder", choices.holders},
                                                                    {"hand.device", choices.hands},
                                                                    {"hand.position_type", choices.position_types},
                                                                    {"force.controller", choices.controller_forces},

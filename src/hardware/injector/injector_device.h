@@ -16,6 +16,9 @@ struct InjectorReading {
   double pressure = 0;        ///< Pa, gauge, behind the liquid
   double flow = 0;            ///< m^3/s, out of the tip
   double volume = 0;          ///< m^3, out of the tip since the last reset; liquid drawn in counts negative
+  double drawn = 0;           ///< m^3, of the medium that is in the tip; what is pushed out is the medium first
+  double interface = 0;       ///< m, from the mouth to where the medium ends and the filling begins
+  bool limited = false;       ///< draw_limit is reached: the balance is the rest pressure
   bool busy = false;          ///< a pulse is pending or in progress
   std::uint64_t last_id = 0;  ///< of the last completed pulse; 0: none
   unsigned pulses = 0;        ///< completed since the start
@@ -40,7 +43,7 @@ class InjectorDevice {
   /// count as completed. Without a pulse it has no effect. Returns an empty text, or the reason for
   /// the refusal; the pulse then continues.
   virtual std::string stop() = 0;
-  /// Clears a fault and the volume.
+  /// Clears a fault, the volume and what was drawn in: the pipette counts as filled up to its mouth.
   virtual void reset() = 0;
 
   /// `time` (s) never decreases.

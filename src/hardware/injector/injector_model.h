@@ -11,16 +11,22 @@ namespace microinjection {
 struct InjectorModelConfig {
   double rise_time = 5e-3;  ///< s, time constant of the regulator's first-order response
   double balance = 545;     ///< Pa, gauge, at the start
+  double draw_limit = 0;    ///< m^3, of the medium that may be drawn into the tip; 0: any; not read
   PipetteConfig pipette;
   InjectorLimits limits;
 
-  /// Reads its own keys, the section `pipette`, and the limits.
+  /// Reads its own keys but draw_limit, the section `pipette`, and the limits.
   static InjectorModelConfig read(ConfigReader& reader);
 };
 
 /// A pressure regulator with a pipette: p' = (target - p) / rise_time, flow by PipetteFlow.
 /// Pressure and volume are integrated exactly, also if a pulse ends within a step, so results do
 /// not depend on the step.
+///
+/// A suction that nobody ends fills the pipette with medium, or, after the break of a membrane, with the cell. So what
+/// is drawn in has a limit. When it is reached, a pulse ends and the balance becomes the rest pressure, at which
+/// nothing flows. The pressure then still falls off with the regulator's time; that much earlier is the switch, so that
+/// exactly the limit is drawn in.
 class InjectorModel : public InjectorDevice {
  public:
   explicit InjectorModel(const InjectorModelConfig& config);
@@ -40,11 +46,20 @@ class InjectorModel : public InjectorDevice {
   /// Ends the current pulse as completed.
   void finish();
 
+  /// Why a pressure (Pa) may not be set: it would draw in beyond the limit; empty: it may.
+  std::string drawRefusal(double pressure) const;
+  double restPressure() const { return flow_.restPressure(); }  ///< Pa, gauge
+
   /// Injects a fault: the tip's flow resistance is `factor` times that of a clean tip. @pre factor
   /// >= 1
   void clog(double factor) { clogging_ = factor; }
 
  private:
+  double poured(double target, double dt) const;
+  double coast() const;
+  double crossing(double target) const;
+  double untilLimit(double target) const;
+  void follow(double target, double dt);
   void advance(double target, double dt);
 
   InjectorModelConfig config_;

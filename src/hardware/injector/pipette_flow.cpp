@@ -22,6 +22,20 @@ PipetteConfig PipetteConfig::read(ConfigReader& reader) {
   return config;
 }
 
+double interfaceDepth(const PipetteConfig& config, double drawn) {
+  const double tip = config.tip_radius, shaft = config.shaft_radius;
+  const double of_end = M_PI * tip * tip * config.tip_length;
+  if (drawn <= of_end) return drawn / (M_PI * tip * tip);
+  const double beyond = drawn - of_end;
+  const double of_cone = M_PI / 3 * config.taper_length * (tip * tip + tip * shaft + shaft * shaft);
+  if (beyond > of_cone) return config.tip_length + config.taper_length + (beyond - of_cone) / (M_PI * shaft * shaft);
+  const double slope = (shaft - tip) / config.taper_length;
+  // The cone's volume is pi (r^3 - tip^3) / (3 slope); in a nearly straight one that difference would be lost.
+  if (slope < 1e-9) return config.tip_length + beyond / (M_PI * tip * tip);
+  const double radius = std::cbrt(tip * tip * tip + 3 * slope * beyond / M_PI);
+  return config.tip_length + (radius - tip) / slope;
+}
+
 double coneResistanceIntegral(double from_radius, double to_radius, double length) {
   // With r linear in z: (r1^-3 - r2^-3) / (3 slope), without the division by a slope that may be
   // zero.

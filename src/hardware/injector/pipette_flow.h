@@ -46,6 +46,10 @@ class PipetteFlow {
   double rest_;  // Pa
 };
 
+/// How far (m) from the mouth the interface between the medium and the pipette's filling is when so much (m^3) has been
+/// drawn in: through the straight end, then the cone, then the shaft. @pre drawn >= 0
+double interfaceDepth(const PipetteConfig& config, double drawn);
+
 /// Integral of r^-4 (m^-3) along a cone of this length between two radii (m); equal radii make a
 /// straight pipe.
 double coneResistanceIntegral(double from_radius, double to_radius, double length);

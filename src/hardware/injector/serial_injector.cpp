@@ -14,15 +14,16 @@ constexpr double kRiseTimes = 5;  // time constants, after which 0.7 % of a pres
 }  // namespace
 
 SerialInjector::SerialInjector(std::unique_ptr<Wire> wire, const InjectorProtocol& protocol,
-                               const InjectorModelConfig& model)
+                               const InjectorModelConfig& model, Start start)
     : wire_(std::move(wire)),
       protocol_(protocol),
       limits_(model.limits),
       model_(model),
       dialogue_(*wire_, protocol.framing),
+      commanded_(start == Start::kSendBalance),
       sent_balance_(model.balance),
       settling_(kRiseTimes * model.rise_time) {
-  if (!protocol_.balance.empty()) waiting_balance_ = model.balance;
+  repeatBalance();
   if (protocol_.stop.empty()) return;
   first_stop_ = protocol_.stop.front().send.fill(protocol_.balanceValues(model.balance)) + protocol_.framing.send_end;
   wire_->setStopsApart(protocol_.stop_apart);
@@ -63,7 +64,9 @@ bool SerialInjector::triggered() const {
 std::string SerialInjector::unconfirmedReason() const {
   if (protocol_.timed && !stopped_) return "the device has not confirmed that its output is off";
   if (time_ < unconfirmed_until_) return "a pulse may be under way";
-  return balance_confirmed_ || protocol_.balance.empty() ? "" : "the device has not accepted the balance pressure";
+  return balance_confirmed_ || !commanded_ || protocol_.balance.empty()
+             ? ""
+             : "the device has not accepted the balance pressure";
 }
 
 std::string SerialInjector::fault() const {
@@ -82,6 +85,7 @@ std::string SerialInjector::pulse(const InjectionPulse& pulse) {
   if (!fault().empty()) return fault();
   if (waiting_pulse_ || sent_pulse_ || unverified_ || model_.reading().busy) return "a pulse is under way";
   std::string out_of_limits = limits_.check(pulse);
+  if (out_of_limits.empty()) out_of_limits = model_.drawRefusal(pulse.pressure);
   if (!out_of_limits.empty()) return out_of_limits;
   // Checks the rounded values: 0.4 ms is no pulse if the line has whole milliseconds.
   const std::string sent = limits_.check(protocol_.asSent(pulse));
@@ -98,8 +102,10 @@ std::string SerialInjector::setBalance(double pressure) {
   if (!fault_.empty()) return fault_;
   std::string refusal = limits_.checkPressure("balance pressure", pressure);
   if (refusal.empty()) refusal = protocol_.balanceRefusal(pressure);
+  if (refusal.empty()) refusal = model_.drawRefusal(pressure);
   if (!refusal.empty()) return refusal;
   waiting_balance_ = pressure;
+  commanded_ = true;
   tries_ = 0;
   return "";
 }
@@ -120,20 +126,42 @@ std::string SerialInjector::stop() {
 void SerialInjector::reset() {
   fault_.clear();
   tries_ = 0;
-  const bool has_balance = protocol_.balance.empty() || balance_confirmed_ || task_ == Task::kBalance;
-  if (!has_balance && !waiting_balance_) waiting_balance_ = sent_balance_;
+  if (!balance_confirmed_ && task_ != Task::kBalance) repeatBalance();
   model_.reset();
   volume_ = 0;
   if (unverified_) unverified_->volume = 0;
   report();
 }
 
+/// Sends the last balance pressure, unless another one waits or there was none.
+void SerialInjector::repeatBalance() {
+  if (commanded_ && !protocol_.balance.empty() && !waiting_balance_) waiting_balance_ = sent_balance_;
+}
+
+/// By the model draw_limit is reached: so that the device draws in no more it gets the rest pressure, or, in the digits
+/// of its line, one above it.
+void SerialInjector::endDrawing(bool by_pulse) {
+  const double rest = model_.restPressure();
+  double pressure = protocol_.balanceAsSent(rest);
+  for (double above = 1; pressure < rest && above < 1e6; above *= 2) pressure = protocol_.balanceAsSent(rest + above);
+  std::string refusal = by_pulse && protocol_.stop.empty() ? "the protocol has no line that ends a pulse" : "";
+  if (by_pulse) {
+    unverified_.reset();
+    waiting_stop_ = refusal.empty();
+    over_ = false;
+  }
+  if (const std::string balance = setBalance(pressure); refusal.empty()) refusal = balance;
+  balance_confirmed_ = balance_confirmed_ && !refusal.empty();  // what it draws in until then is unknown
+  if (!refusal.empty()) fail("draw_limit is reached, and the device draws in on: " + refusal);
+}
+
 /// A pulse counts when the model has finished it and the device has confirmed its settings.
 void SerialInjector::stepModel(double time) {
   const bool unknown = !wire_->isOpen() || !error_text_.empty() || !unconfirmedReason().empty();
-  const double before = model_.reading().volume;
+  const InjectorReading before = model_.reading();
   model_.step(time);
-  if (!unknown) volume_ += model_.reading().volume - before;
+  if (model_.reading().limited && !before.limited) endDrawing(before.busy);
+  if (!unknown) volume_ += model_.reading().volume - before.volume;
 }
 
 void SerialInjector::step(double time) {
@@ -167,7 +195,7 @@ bool SerialInjector::keepOpen(double time) {
   error_text_ = wire_->open();
   if (!error_text_.empty()) return false;
   // The device may have been switched off.
-  if (!waiting_balance_ && !protocol_.balance.empty()) waiting_balance_ = sent_balance_;
+  repeatBalance();
   waiting_begin_ = !protocol_.begin.empty();
   tries_ = query_tries_ = 0;
   dialogue_.resynchronize(time);
@@ -225,8 +253,12 @@ void SerialInjector::handleReply(const std::string& reply) {
   const InjectorProtocol::Exchange& exchange = exchanges(task_)[step_];
   std::smatch groups;
   std::string wrong = std::regex_match(reply, groups, exchange.expect) ? "" : "a wrong reply";
-  if (wrong.empty()) wrong = InjectorProtocol::misread(exchange, groups, values_);
-  if (wrong.empty() && task_ == Task::kQuery && groups.size() > 1 && exchange.confirm.empty()) {
+  // A device that was not told a pressure may have any.
+  const bool is_new = task_ == Task::kQuery && !commanded_;
+  if (wrong.empty() && (!is_new || exchange.confirm == kLine))
+    wrong = InjectorProtocol::misread(exchange, groups, values_);
+  const bool tells = exchange.confirm.empty() || (is_new && exchange.confirm == "pressure");
+  if (wrong.empty() && task_ == Task::kQuery && groups.size() > 1 && tells) {
     const auto pressure = protocol_.queriedPressure(groups);
     if (pressure && limits_.checkPressure("", *pressure).empty()) {
       updatePressure(*pressure);
@@ -368,7 +400,7 @@ void SerialInjector::abort(const std::string& reason, Refusal refusal) {
   } else if (given_up == Task::kQuery) {
     if (protocol_.query.front().confirm == kLine) {  // it may have been reset, and cannot tell
       balance_confirmed_ = false;
-      if (!waiting_balance_) waiting_balance_ = sent_balance_;
+      repeatBalance();
       pressureChanges();
     }
     if (!last) return;

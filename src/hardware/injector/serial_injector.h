@@ -43,9 +43,14 @@ namespace microinjection {
 /// answer, the pressure is unknown and the volume does not grow; it leaves out pulses whose dose is unknown.
 class SerialInjector : public InjectorDevice {
  public:
+  /// kKeep: the device keeps the pressure that it has until another one is commanded. For a holder: a driver that
+  /// begins anew must not let go of the cell.
+  enum class Start { kSendBalance, kKeep };
+
   /// `model`: pipette, limits and the device's rise time; its balance pressure is sent at the
   /// start.
-  SerialInjector(std::unique_ptr<Wire> wire, const InjectorProtocol& protocol, const InjectorModelConfig& model);
+  SerialInjector(std::unique_ptr<Wire> wire, const InjectorProtocol& protocol, const InjectorModelConfig& model,
+                 Start start = Start::kSendBalance);
   ~SerialInjector() override;  ///< ends a pulse that may be in progress
 
   std::string pulse(const InjectionPulse& pulse) override;
@@ -56,6 +61,8 @@ class SerialInjector : public InjectorDevice {
   const InjectorReading& reading() const override { return reading_; }
   std::string fault() const override;
 
+  /// Whether the device has said its pressure, or has accepted the one that reading() estimates.
+  bool pressureKnown() const { return fault().empty() && (pressure_ || (commanded_ && balance_confirmed_)); }
   unsigned badReplies() const { return bad_replies_ + dialogue_.badLines(); }
 
  private:
@@ -68,6 +75,8 @@ class SerialInjector : public InjectorDevice {
   std::string unconfirmedReason() const;
   bool mayFlow() const;
   void stepModel(double time);
+  void endDrawing(bool by_pulse);
+  void repeatBalance();
   void giveUpVerification(const std::string& reason);
   bool stopping() const { return waiting_stop_ || task_ == Task::kStop; }
   void checkGuard(double time);
@@ -119,6 +128,7 @@ class SerialInjector : public InjectorDevice {
   double last_sent_ = 0;                   ///< s, of the last sent line
   double unconfirmed_until_ = -1e9;        ///< s, end of a pulse that may run without being accepted
   std::optional<double> unanswered_;       ///< s, that it may last from the next line on, until one is answered
+  bool commanded_;                         ///< it has been told a balance pressure, or will be at the start
   bool balance_confirmed_ = false;         ///< the device has accepted the last one sent
   std::optional<double> waiting_balance_;  ///< Pa
   double sent_balance_ = 0;                ///< Pa

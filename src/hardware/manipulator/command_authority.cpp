@@ -5,7 +5,7 @@ namespace microinjection {
 bool CommandAuthority::authorize(const std::string& source, double time) {
   if (!fault_.empty()) return false;
   if (source != authorized_source_ && !authorized_source_.empty()) {
-    fault_ = "two nodes command the needle: " + authorized_source_ + " and " + source;
+    fault_ = "two nodes command " + commanded_what_ + ": " + authorized_source_ + " and " + source;
     return false;
   }
   authorized_source_ = source;

@@ -10,6 +10,9 @@ namespace microinjection {
 /// other's limits. The fault lasts until clear().
 class CommandAuthority {
  public:
+  /// `commanded`: what the sources command, for the text of a fault.
+  explicit CommandAuthority(const std::string& commanded = "the needle") : commanded_what_(commanded) {}
+
   /// Registers a command of `source` at `time` (s), which is the same for all commands of a step.
   /// Returns true if the command may be executed: without a fault.
   bool authorize(const std::string& source, double time);
@@ -22,6 +25,7 @@ class CommandAuthority {
   void clear();
 
  private:
+  std::string commanded_what_;
   std::string authorized_source_;                                ///< empty: any may command
   double commanded_ = -std::numeric_limits<double>::infinity();  ///< s, of the authorized source's last command
   std::string fault_;

@@ -13,6 +13,7 @@
 #include "nodes/force_watchdog_node.h"
 #include "nodes/haptic/haptic_device_node.h"
 #include "nodes/haptic_bridge_node.h"
+#include "nodes/holder_node.h"
 #include "nodes/image_recorder_node.h"
 #include "nodes/injection_controller_node.h"
 #include "nodes/injector_node.h"
@@ -43,6 +44,7 @@ NodeFactory nodeFactory(const std::string& program) {
       {"force_watchdog", makeNode<ForceWatchdogNode>()},
       {"haptic_bridge", makeNode<HapticBridgeNode>()},
       {"haptic_device", makeNode<HapticDeviceNode>()},
+      {"holder", makeNode<HolderNode>()},
       {"image_recorder", makeNode<ImageRecorderNode>()},
       {"injection_controller", makeNode<InjectionControllerNode>()},
       {"injector", makeNode<InjectorNode>()},

@@ -141,6 +141,86 @@ TEST(InjectorModel, RefusesWithReasonAndChangesNothing) {
   EXPECT_EQ(model.reading().pulses, 1U);
 }
 
+constexpr double kDrawLimit = 2e-15;  // m^3
+
+/// After a suction of 10 kPa below the rest, whose end nobody commands.
+InjectorModel drawnFull(double step, double until = 2) {
+  InjectorModelConfig config = atRest();
+  config.draw_limit = kDrawLimit;
+  InjectorModel model(config);
+  model.step(0);
+  EXPECT_EQ(model.setBalance(config.balance - 10e3), "");
+  const int steps = static_cast<int>(std::lround(until / step));
+  for (int i = 1; i <= steps; ++i) model.step(i * step);
+  return model;
+}
+
+TEST(InjectorModel, ASuctionEndsWithExactlyItsLimitWhateverTheStep) {
+  for (const double step : {1e-4, 5e-3, 0.5, 2.0}) {
+    InjectorModel model = drawnFull(step);
+    EXPECT_NEAR(model.reading().drawn / kDrawLimit, 1, 1e-9) << step;
+    EXPECT_NEAR(model.reading().volume / -kDrawLimit, 1, 1e-9) << step;
+    EXPECT_NEAR(model.reading().pressure, model.restPressure(), 1e-6);
+    EXPECT_TRUE(model.reading().limited);
+    EXPECT_NEAR(model.reading().interface, interfaceDepth(PipetteConfig(), kDrawLimit), 1e-12);
+  }
+  // Half way it is not limited yet: what the limit ends is the suction, and not its beginning.
+  const double half = kDrawLimit / 2 / -PipetteFlow(PipetteConfig()).flow(atRest().balance - 10e3);
+  EXPECT_FALSE(drawnFull(half / 100, half).reading().limited);
+}
+
+TEST(InjectorModel, AFullPipetteDrawsNoMoreUntilItIsPushedOut) {
+  InjectorModel model = drawnFull(0.5);
+  const double rest = model.restPressure();
+  EXPECT_EQ(model.setBalance(rest - 1),
+            "draw_limit = 2e-15 m^3 is reached; push out what was drawn in first, or reset");
+  EXPECT_NE(model.pulse({1, rest - 100, 0.1}), "");
+  EXPECT_EQ(model.setBalance(rest + 10e3), "");
+  model.step(2.1);
+  EXPECT_FALSE(model.reading().limited);
+  EXPECT_LT(model.reading().drawn, kDrawLimit);
+  model.step(100);
+  EXPECT_EQ(model.reading().drawn, 0) << "what leaves now is the filling";
+  EXPECT_EQ(model.setBalance(rest - 10e3), "");
+  model.step(200);
+  EXPECT_NEAR(model.reading().drawn / kDrawLimit, 1, 1e-9) << "the limit counts from the filling's end";
+  EXPECT_TRUE(model.reading().limited);
+  model.reset();
+  EXPECT_EQ(model.reading().drawn, 0);
+  EXPECT_EQ(model.setBalance(rest - 10e3), "");
+}
+
+TEST(InjectorModel, APulseOfSuctionEndsAtTheLimitAndDoesNotCount) {
+  InjectorModelConfig config = atRest();
+  config.draw_limit = kDrawLimit;
+  InjectorModel model(config);
+  model.step(0);
+  ASSERT_EQ(model.pulse({1, config.balance - 20e3, 60}), "");
+  model.step(1);
+  EXPECT_FALSE(model.reading().busy);
+  EXPECT_EQ(model.reading().pulses, 0U);
+  EXPECT_NEAR(model.reading().drawn / kDrawLimit, 1, 1e-9);
+}
+
+TEST(InjectorModel, WhatIsDrawnCountsFromTheTurnOfTheFlow) {
+  const InjectorModelConfig config = atRest();
+  for (const double step : {1e-4, 0.05}) {
+    InjectorModel model(config);
+    model.step(0);
+    model.setBalance(config.balance + 10e3);
+    model.step(0.1);
+    const double out = model.reading().volume;
+    EXPECT_EQ(model.reading().drawn, 0);
+    model.setBalance(config.balance - 10e3);
+    for (int i = 1; i <= std::lround(0.05 / step); ++i) model.step(0.1 + i * step);
+    // Until the turn, rise_time ln 2 later, medium could not be drawn in: p - rest = 10 kPa (2 exp(-t / tau) - 1).
+    const double tau = config.rise_time, unit = PipetteFlow(config.pipette).flow(config.balance + 10e3);
+    EXPECT_NEAR(model.reading().drawn, unit * (0.05 - tau * std::log(2.0) - tau * (1 - 2 * std::exp(-0.05 / tau))),
+                1e-9 * out)
+        << step;
+  }
+}
+
 TEST(InjectorModel, ReadsItsConfigurationStrictly) {
   ConfigReader reader(YAML::Load("{balance: 1.0e6, pipette: {tip_radius: 1.0, viscosity: 0}}"), "test");
   InjectorModelConfig::read(reader);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace microinjection {
@@ -53,6 +54,27 @@ TEST(PipetteFlow, CapillarityDrawsBackUntilTheBalancePressure) {
   config.contact_angle = 0;
   config.outside_pressure = 100;
   EXPECT_LT(PipetteFlow(config).flow(600), 0);
+}
+
+TEST(PipetteFlow, TheInterfaceIsWhereThePipetteHoldsWhatWasDrawn) {
+  const PipetteConfig config;
+  const auto radius = [&](double z) {
+    const double along = std::clamp((z - config.tip_length) / config.taper_length, 0.0, 1.0);
+    return config.tip_radius + along * (config.shaft_radius - config.tip_radius);
+  };
+  double volume = 0, z = 0;
+  const double slice = 0.5e-6;
+  for (const double place : {20e-6, 50e-6, 80e-6, 1e-3, 8.05e-3, 12e-3}) {
+    for (; z < place - slice / 2; z += slice) volume += M_PI * std::pow(radius(z + slice / 2), 2) * slice;
+    EXPECT_NEAR(interfaceDepth(config, volume) / place, 1, 1e-4) << place;
+  }
+  EXPECT_EQ(interfaceDepth(config, 0), 0);
+  PipetteConfig nearly = straight(10e-6, 1e-4);
+  nearly.taper_length = 1e-3;
+  nearly.shaft_radius = 10e-6 * (1 + 1e-13);
+  EXPECT_NEAR(interfaceDepth(nearly, M_PI * 1e-10 * 5e-4), 5e-4, 1e-9);
+  nearly.shaft_radius = 10e-6;
+  EXPECT_NEAR(interfaceDepth(nearly, M_PI * 1e-10 * 2e-3), 2e-3, 1e-9) << "beyond a cone that is none";
 }
 
 TEST(PipetteFlow, ClogDividesTheFlow) {

@@ -34,6 +34,7 @@ const std::map<std::string, std::string> kGood = {
     {"force_watchdog", "{}"},
     {"haptic_bridge", "{}"},
     {"haptic_device", "{kind: joy}"},
+    {"holder", "{}"},
     {"image_recorder", "{output_dir: FOLDER}"},
     {"injection_controller", "{}"},
     {"injector", "{}"},
