@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
+#include <iterator>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,6 +16,7 @@
 #include "base/exit_status.h"
 #include "base/plausible.h"
 #include "base/standard_output.h"
+#include "cell/identification/combined_modulus.h"
 #include "cell/identification/contact_guess.h"
 #include "cell/identification/family_law.h"
 #include "cell/identification/identified_scene.h"
@@ -94,12 +97,23 @@ int fitPoint(const IdentifyArguments& arguments, const std::optional<Scene>& sce
   return conclude(arguments, "one point", found);
 }
 
-int fitTongue(const IdentifyArguments& arguments, const Scene& scene) {
-  const TongueRecord record = readTongueRecord(arguments.tongue, arguments.curve.columns);
+/// The columns that were named of one of the two kinds of records.
+std::map<std::string, std::string> columnsOf(const IdentifyArguments& arguments, bool of_tongues) {
+  std::map<std::string, std::string> columns = arguments.curve.columns;
+  if (arguments.tongue.empty() || arguments.record.empty()) return columns;
+  for (auto column = columns.begin(); column != columns.end();) {
+    const bool is_of_tongues = column->first == "pressure" || column->first == "tongue";
+    column = is_of_tongues == of_tongues ? std::next(column) : columns.erase(column);
+  }
+  return columns;
+}
+
+Identification fitTongue(const IdentifyArguments& arguments, const Scene& scene) {
+  const TongueRecord record = readTongueRecord(arguments.tongue, columnsOf(arguments, true));
   for (const std::string& note : record.notes) std::printf("%s: %s\n", arguments.tongue.c_str(), note.c_str());
-  const Identification found = identifyTongue(record, scene, TongueShape(scene));
+  Identification found = identifyTongue(record, scene, TongueShape(scene));
   printIdentification("tongue", found);
-  return conclude(arguments, arguments.tongue, {{"tongue", found}});
+  return found;
 }
 
 int run(int argc, char** argv) {
@@ -118,8 +132,13 @@ int run(int argc, char** argv) {
     errors.throwAny();
   }
   if (arguments.point) return fitPoint(arguments, scene);
-  if (!arguments.tongue.empty()) return fitTongue(arguments, *scene);
-  const ForceCurve curve = identifiedCurve(readForceCurve(arguments.record, arguments.curve));
+  std::optional<Identification> tongue;
+  if (!arguments.tongue.empty()) tongue = fitTongue(arguments, *scene);
+  if (arguments.record.empty()) return conclude(arguments, arguments.tongue, {{"tongue", *tongue}});
+  ForceCurveConfig config = arguments.curve;
+  config.columns = columnsOf(arguments, false);
+  const ForceCurve curve = identifiedCurve(readForceCurve(arguments.record, config));
+  if (tongue) scene = scene->glued();  // to a ring where the lip touches it: what a needle's force is known of
   std::vector<std::shared_ptr<ElasticLaw>> laws;
   for (const std::string& model : arguments.models) laws.push_back(makeLaw(model, scene, arguments, depthOf(curve)));
   for (const std::string& note : curve.notes) std::printf("%s: %s\n", arguments.record.c_str(), note.c_str());
@@ -146,7 +165,22 @@ int run(int argc, char** argv) {
     const auto best = std::min_element(criteria.begin(), criteria.end()) - criteria.begin();
     std::printf("the information criterion prefers: %s\n", fits[static_cast<std::size_t>(best)].first.c_str());
   }
-  return conclude(arguments, arguments.record, fits, &curve);
+  if (!tongue) return conclude(arguments, arguments.record, fits, &curve);
+  Identification& force = fits.front().second;
+  for (Estimate& estimate : force.estimates) {  // a held cell's force is that of a glued one within this
+    if (estimate.name != "young_modulus") continue;
+    estimate.low /= 1 + Scene::kGluedError;
+    estimate.high *= 1 + Scene::kGluedError;
+  }
+  if (!force.consistent() || !tongue->consistent()) {
+    std::cerr << "identify: " << (force.consistent() ? "the tongues are not" : "the force is not")
+              << " that of the scene's cell: the moduli are not joined\n";
+    return kInconsistent;
+  }
+  fits.insert(fits.begin(), {"both", combineModuli(force, *tongue)});
+  fits.emplace_back("tongue", *tongue);
+  printIdentification("both", fits.front().second);
+  return conclude(arguments, arguments.record + " and " + arguments.tongue, fits);
 }
 
 }  // namespace

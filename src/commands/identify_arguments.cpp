@@ -23,6 +23,7 @@ constexpr char kHelp[] = R"help(identify: which cell is it? Fits a recorded forc
 Usage: identify --record FILE [--scene FILE] [--model M1,M2,...] [--out SCENE] [...]
        identify --point DEPTH,FORCE --reading-error E --scene FILE --model solution [...]
        identify --tongue FILE --scene FILE [--out SCENE] [...]
+       identify --record FILE --tongue FILE --scene FILE [--out SCENE] [...]
 
 The record is a table: a line of column names, then numbers. Names and units are found by themselves: time_s,
 "height (um)", force_nN, deflection_m, ... ; otherwise name them: --column force=Fz:uN. Signs, a sensor's offset and
@@ -30,6 +31,7 @@ drift, outliers and missing rows may be as they come. Only the way in is used.
 
 Tongues are a table of pressures in the holding pipette and the lengths that they have drawn in, as images show them from
 any fixed place: "pressure (kPa)", tongue_um, ... ; the scene has the mouth (holding_pipette/mouth). It takes seconds.
+With a record of the same cell the two moduli are joined (model `both`, which is the first one then).
 
 Models (each is fitted, and compared with the others):
   family    the converged force of the scene's cell; its modulus, and ratios that --free names; it is compared with
@@ -114,6 +116,8 @@ MeasuredPoint parsePoint(const std::string& text, double reading_error, double d
 /// Throws ConfigError for an option that tongues do not use.
 void requireFitTongue(const IdentifyArguments& arguments, const boost::program_options::variables_map& values) {
   if (arguments.scene.empty()) throw ConfigError("--tongue: needs --scene, which has the mouth");
+  if (!arguments.residuals.empty()) throw ConfigError("--residuals: must be left out with --tongue");
+  if (!arguments.record.empty()) return;
   for (const auto& [name, value] : values) {
     const bool used = name == "tongue" || name == "scene" || name == "out" || name == "csv" || name == "column";
     if (!value.defaulted() && !used && !value.empty())
@@ -138,7 +142,7 @@ std::optional<IdentifyArguments> parseIdentifyArguments(int argc, char** argv) {
   add("help", "this text");
   add("record", po::value(&arguments.record), "file with the record");
   add("point", po::value(&point), "DEPTH,FORCE: one published point instead of a record, m, N; the contact is at 0");
-  add("tongue", po::value(&arguments.tongue), "file of tongue lengths by suction, instead of a record");
+  add("tongue", po::value(&arguments.tongue), "file of tongue lengths by suction, instead of a record or beside it");
   add("reading-error", po::value(&reading_error), "of the point's force, relative: half of its interval of 95 %");
   add("depth-error", po::value(&depth_error), "m, same, of the point's depth");
   add("scene", po::value(&arguments.scene), "file with the cell's sizes and the tip, SI units");
@@ -168,8 +172,10 @@ std::optional<IdentifyArguments> parseIdentifyArguments(int argc, char** argv) {
   add("no-intervals", po::bool_switch(&quick), "intervals from the curvature alone: quicker");
   po::variables_map values;
   if (!readCommandLine(wordsOf(argc, argv), options, "", values)) return std::nullopt;
-  if (!arguments.record.empty() + !point.empty() + !arguments.tongue.empty() != 1) {
-    throw ConfigError("--record, or else --point or --tongue: one of them must be given, the file with the record");
+  const bool records = !arguments.record.empty() || !arguments.tongue.empty();
+  if (records + !point.empty() != 1) {
+    throw ConfigError(
+        "--record, --tongue or both, or else --point: one of them must be given, the file with the record");
   }
   if (!arguments.tongue.empty()) requireFitTongue(arguments, values);
   if (!point.empty()) {

@@ -14,7 +14,7 @@ namespace microinjection {
 /// Command line of `identify`.
 struct IdentifyArguments {
   std::string record;  ///< file; empty with a point and with tongues
-  std::string tongue;  ///< file of tongues by suction; empty with a record or a point
+  std::string tongue;  ///< file of tongues by suction, alone or beside the record of the same cell; empty: none
   std::optional<MeasuredPoint> point;
   std::string scene;                ///< file; empty: none
   std::vector<std::string> models;  ///< of the list in the help

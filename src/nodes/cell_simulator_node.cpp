@@ -1,5 +1,6 @@
 #include "nodes/cell_simulator_node.h"
 
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -10,14 +11,17 @@
 namespace microinjection {
 namespace {
 
-constexpr double kContactPeriod = 0.02;  ///< s, of /cell/contact without a change
+constexpr double kContactPeriod = 0.02;   ///< s, of /cell/contact without a change
+constexpr double kBorePeriod = 0.005;     ///< s
+constexpr double kInjectorTimeout = 0.1;  ///< s, past which there is no suction
 
 }  // namespace
 
 const char* const CellSimulatorNode::kHelp =
     "cell_simulator: the finite-element cell under the needle.\n"
-    "In: /needle/measured_cp or /needle/true_cp, /cell/set_parameters. Out: /cell/predicted_cf, /cell/contact, "
-    "/cell/state.\n"
+    "In: /needle/measured_cp or /needle/true_cp, /cell/set_parameters, of a needle with a bore /injector/state. Out: "
+    "/cell/predicted_cf,\n"
+    "/cell/contact, /cell/state, of a needle with a bore /cell/bore.\n"
     "Service: ~set_cell_parameters.\n";
 
 CellSimulatorNode::Parameters CellSimulatorNode::Parameters::read(const Bus& bus) {
@@ -50,6 +54,11 @@ CellSimulatorNode::CellSimulatorNode(Bus& bus)
   cell_ = std::make_unique<PlacedCell>(*chosen_.cell);
   invalid_reason_.reserve(200);  // no allocation in a step
   can_be_punctured_ = !cell_->layers().empty();
+  if (cell_->bore()) {
+    injector_ =
+        &cycle_.input<cell_microinjection::InjectorState>("injector/state", InputPhase::kSampled, kInjectorTimeout);
+    bore_ = &cycle_.output<cell_microinjection::BoreState>("cell/bore");
+  }
   using Thread = CellStatePublisher::Thread;
   const auto thread = cycle_.bus().isVirtual() ? Thread::kOfTheStep : Thread::kOwn;
   state_publisher_ = std::make_unique<CellStatePublisher>(*cell_, scene, state_, parameters_.state_rate, thread);
@@ -73,6 +82,7 @@ void CellSimulatorNode::step(const Cycle::Tick& tick) {
   TipForce force{false, Eigen::Vector3d::Zero()};
   const auto* message = needle_.get(tick.now);
   const auto pose = validPose(message);
+  if (bore_) readInjector(tick.now);
   if (pose) {
     force = cell_->step(pose->translation(), pose->linear().col(2), tick.now.toSec());
     invalid_reason_ = cell_->invalidReason();
@@ -87,6 +97,7 @@ void CellSimulatorNode::step(const Cycle::Tick& tick) {
     force_.publishInvalid(wrench);
   }
   publishContact(tick.now);
+  if (bore_) publishBore(tick.now);
   state_publisher_->step(moment(tick.now, force));
 }
 
@@ -100,6 +111,31 @@ void CellSimulatorNode::publishContact(const ros::Time& now) {
   contact.header.stamp = now;
   contact_.publish(contact);
   last_contact_ = contact;
+}
+
+/// Without a valid state of the injector there is no suction.
+void CellSimulatorNode::readInjector(const ros::Time& now) {
+  const auto* injector = injector_->get(now);
+  const bool valid = injector && std::isfinite(injector->rest_pressure - injector->pressure) &&
+                     std::isfinite(injector->resistance) && injector->resistance > 0;
+  CellModel::BoreLine line;
+  if (valid) line = {injector->rest_pressure - injector->pressure, injector->resistance};
+  cell_->setBoreLine(line);
+}
+
+void CellSimulatorNode::publishBore(const ros::Time& now) {
+  if (!isDue(bore_published_, now, kBorePeriod)) return;
+  bore_published_ = now;
+  const CellModel::Bore& bore = *cell_->bore();
+  cell_microinjection::BoreState state;
+  state.header.stamp = now;
+  state.covered = bore.covered;
+  state.length = bore.length;
+  state.volume = bore.volume;
+  state.flow = bore.flow;
+  state.suction = bore.suction;
+  state.tension = bore.tension;
+  bore_->publish(state);
 }
 
 /// In virtual time without its processor time, which differs in each run.

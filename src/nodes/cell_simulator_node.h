@@ -9,8 +9,10 @@
 
 #include "cell/choice/make_cell_model.h"
 #include "cell/model/placed_cell.h"
+#include "cell_microinjection/BoreState.h"
 #include "cell_microinjection/CellContact.h"
 #include "cell_microinjection/CellState.h"
+#include "cell_microinjection/InjectorState.h"
 #include "nodes/cell/cell_parameter_server.h"
 #include "nodes/cell/cell_state_publisher.h"
 #include "nodes/runtime/cycle.h"
@@ -19,9 +21,10 @@ namespace microinjection {
 
 /// The cell under the needle, see makeCellModel. An invalid force has stamp 0.
 ///
-/// In:  /needle/measured_cp or /needle/true_cp (PoseStamped, tip in `world`)
+/// In:  /needle/measured_cp or /needle/true_cp (PoseStamped, tip in `world`); of a needle with a bore
+///      /injector/state (InjectorState, the pressure in it)
 /// Out: /cell/predicted_cf (WrenchStamped, of the cell on the tip, in `world`), /cell/contact (CellContact, on change
-///      and each 20 ms), /cell/state (CellState)
+///      and each 20 ms), /cell/state (CellState); of a needle with a bore /cell/bore (BoreState, 200 Hz)
 /// The cell's parameters change by CellParameterServer.
 ///
 /// Parameters: config/cell_simulator.yaml
@@ -48,6 +51,8 @@ class CellSimulatorNode {
   std::optional<CellModel::Solution> solution(const ros::Time& now) const;
   CellMoment moment(const ros::Time& now, const TipForce& force) const;
   void publishContact(const ros::Time& now);
+  void readInjector(const ros::Time& now);
+  void publishBore(const ros::Time& now);
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   Parameters parameters_;
@@ -58,6 +63,9 @@ class CellSimulatorNode {
   Output<geometry_msgs::WrenchStamped>& force_;
   Output<cell_microinjection::CellContact>& contact_;
   Output<cell_microinjection::CellState>& state_;
+  Input<cell_microinjection::InjectorState>* injector_ = nullptr;  ///< these two are of a needle with a bore
+  Output<cell_microinjection::BoreState>* bore_ = nullptr;
+  ros::Time bore_published_;
   cell_microinjection::CellContact last_contact_;
   bool can_be_punctured_ = false;
   std::string invalid_reason_;  ///< why the last force was invalid; else empty

@@ -7,10 +7,16 @@
 #include "nodes/runtime/node_parameters.h"
 
 namespace microinjection {
+namespace {
+
+constexpr double kBoreTimeout = 0.1;  ///< s
+
+}  // namespace
 
 const char* const InjectorNode::kHelp =
     "injector: a pressure injector behind the pipette, simulated or on a serial line.\n"
-    "In: /injector/pulse /injector/stop /injector/set_balance. Out: /injector/state. Services: ~reset ~clog "
+    "In: /injector/pulse /injector/stop /injector/set_balance, /cell/bore (simulated). Out: /injector/state. Services: "
+    "~reset ~clog "
     "(simulated).\n";
 
 InjectorNode::Parameters InjectorNode::Parameters::read(const Bus& bus) {
@@ -33,6 +39,7 @@ InjectorNode::Parameters InjectorNode::Parameters::read(const Bus& bus) {
 InjectorNode::InjectorNode(Bus& bus)
     : parameters_(Parameters::read(bus)),
       cycle_(bus, parameters_.rate),
+      flow_(parameters_.model.pipette),
       state_(cycle_.output<cell_microinjection::InjectorState>("injector/state")),
       log_(bus) {
   makeDevice();
@@ -64,12 +71,13 @@ void InjectorNode::makeDevice() {
     return;
   }
   auto model = std::make_unique<InjectorModel>(parameters_.model);
-  InjectorModel* const simulated = model.get();  // owned by device_, which outlives the service
+  simulated_ = model.get();  // owned by device_, which outlives the service
   device_ = std::move(model);
+  bore_ = &cycle_.input<cell_microinjection::BoreState>("cell/bore", InputPhase::kSampled, kBoreTimeout);
   clog_ = cycle_.bus().advertiseService<std_srvs::SetBool>(
-      "~clog", [this, simulated](std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response) {
+      "~clog", [this](std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response) {
         clogged_ = request.data;
-        simulated->clog(clogged_ ? parameters_.clog_factor : 1);
+        simulated_->clog(clogged_ ? parameters_.clog_factor : 1);
         response.success = true;
         return true;
       });
@@ -89,6 +97,7 @@ void InjectorNode::onPulse(const cell_microinjection::InjectionPulse& message) {
   if (!ids_.isNew(message.id)) {
     if (message.id == held_) {
       last_repetition_ = message.header.stamp;
+      adjust(message.pressure);
     } else if (!message.held) {
       ++repeated_;
     }
@@ -99,7 +108,15 @@ void InjectorNode::onPulse(const cell_microinjection::InjectionPulse& message) {
   log_.addResult(command, refusal);
   if (!message.held || !refusal.empty()) return;
   held_ = message.id;
+  held_pressure_ = message.pressure;
   last_repetition_ = message.header.stamp;
+}
+
+/// The sender of the held pulse wants another pressure.
+void InjectorNode::adjust(double pressure) {
+  if (pressure == held_pressure_ || !device_->reading().busy) return;
+  held_pressure_ = pressure;  // one that is refused is not asked for again
+  log_.addResult("pressure of pulse " + std::to_string(held_), device_->adjust(pressure));
 }
 
 void InjectorNode::onStop(const cell_microinjection::StringStamped& message) {
@@ -126,12 +143,18 @@ void InjectorNode::endAbandonedPulse(const ros::Time& now) {
 
 void InjectorNode::step(const Cycle::Tick& tick) {
   endAbandonedPulse(tick.now);
+  if (simulated_) {
+    const auto* bore = bore_->get(tick.now);
+    simulated_->cover(bore && bore->covered ? std::optional(bore->flow) : std::nullopt);
+  }
   device_->step(tick.now.toSec());
   cycle_.bus().setBusy(device_->reading().busy);
   const InjectorReading& reading = device_->reading();
   cell_microinjection::InjectorState state;
   state.header.stamp = tick.now;
   state.pressure = reading.pressure;
+  state.rest_pressure = flow_.restPressure();
+  state.resistance = simulated_ ? simulated_->resistance() : flow_.resistance();
   state.flow = reading.flow;
   state.volume = reading.volume;
   state.drawn = reading.drawn;

@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "cell_microinjection/BoreState.h"
 #include "cell_microinjection/InjectionPulse.h"
 #include "cell_microinjection/InjectorState.h"
 #include "cell_microinjection/StringStamped.h"
@@ -23,9 +24,11 @@ namespace microinjection {
 /// an old message refused. A held pulse ends when its sender is stale, and any pulse when the ROS
 /// master is lost.
 ///
-/// In:  /injector/pulse (InjectionPulse), /injector/stop (StringStamped, the reason; ends the pulse
+/// In:  /injector/pulse (InjectionPulse; of a pulse that is held each repetition may change the pressure),
+/// /injector/stop (StringStamped, the reason; ends the pulse
 ///      at any age), /injector/set_balance (sensor_msgs/FluidPressure: fluid_pressure, Pa, gauge,
-///      although the message defines it as absolute; its variance is not used)
+///      although the message defines it as absolute; its variance is not used), with source simulated /cell/bore
+///      (BoreState: a cell before the mouth lets less flow)
 /// Out: /injector/state (InjectorState)
 /// Services: ~reset (std_srvs/Trigger: clears fault and volume), with source simulated ~clog
 ///      (std_srvs/SetBool)
@@ -50,6 +53,7 @@ class InjectorNode {
 
   void makeDevice();
   void onPulse(const cell_microinjection::InjectionPulse& message);
+  void adjust(double pressure);
   void onStop(const cell_microinjection::StringStamped& message);
   void onBalance(const sensor_msgs::FluidPressure& message);
   std::string stampError(const std_msgs::Header& header) const;
@@ -60,8 +64,12 @@ class InjectorNode {
   Parameters parameters_;
   Cycle cycle_;
   std::unique_ptr<InjectorDevice> device_;
+  InjectorModel* simulated_ = nullptr;                     ///< the device; null: a real one
+  Input<cell_microinjection::BoreState>* bore_ = nullptr;  ///< of the simulated one
+  PipetteFlow flow_;
   Output<cell_microinjection::InjectorState>& state_;
   PulseIds ids_;
+  double held_pressure_ = 0;   ///< Pa, gauge, that its sender wants
   std::uint64_t held_ = 0;     ///< id of the held pulse under way; 0: none
   ros::Time last_repetition_;  ///< stamp of its last message
   bool master_lost_ = false;

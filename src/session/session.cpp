@@ -246,10 +246,7 @@ std::string Session::text() const {
                              .text("urdf", rig.urdf)
                              .flag("allow_network", rig.allow_network)
                              .lines());
-  keys.raw("sensor", sensorText(sensor))
-      .text("injector", injector)
-      .text("holder", holder)
-      .raw("hand", handText(hand));
+  keys.raw("sensor", sensorText(sensor)).text("injector", injector).text("holder", holder).raw("hand", handText(hand));
   keys.raw("force", "\n" + Group(2).text("controller", force.controller).text("hand", force.hand).lines());
   keys.raw("injection", "\n" + Group(2)
                                    .text("mode", injection.mode)

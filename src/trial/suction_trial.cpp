@@ -19,7 +19,14 @@ SuctionTrial SuctionTrial::run(const TrialCell& cell, const BoreTongue& tongue, 
   config.interface.seed = static_cast<unsigned>(seed);
   config.start = startOf(trial.of);
   InjectionRig rig(config, geometryOf(cell.urdf), scaled);
-  rig.run(kLongest);
+  const auto drawing = [&] { return rig.controller().injection() == InjectionState::kAspirate; };
+  rig.step();
+  while (rig.controller().busy() && rig.time() < kLongest) {
+    rig.step();
+    const auto pulse = rig.controller().pulse();
+    const double suction = drawing() && pulse ? config.injector.balance - pulse->pressure : 0;
+    if (drawing()) trial.samples.push_back({rig.time(), suction, rig.reading().x(), scaled.boreLength()});
+  }
   rig.holds();  // what flows in after the end counts, too
   trial.truth = rig.truth();
   trial.result = rig.controller().result();

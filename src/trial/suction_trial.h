@@ -13,6 +13,14 @@ struct SuctionTrial {
   bool breaks = true;  ///< its membrane gives way to suction
   InjectionRig::Truth truth;
   InjectionResult result;
+  /// Each millisecond, from the dent on.
+  struct Sample {
+    double time = 0;     ///< s
+    double suction = 0;  ///< Pa, that the controller asks for
+    double force = 0;    ///< N, along the pipette, as the sensor reads it
+    double length = 0;   ///< m, of what is truly in the bore
+  };
+  std::vector<Sample> samples;
 
   /// @param tongue of any needle: a bore is small against its cell
   /// What tells the controller of the break.

@@ -10,8 +10,9 @@ namespace microinjection {
 
 /// How a membrane gives way to the suction of a needle's bore: a scene's aspiration, of one layer.
 ///
-/// Embryologists distinguish when an oolemma breaks (Palermo and others, "Oolemma characteristics in relation to
-/// survival and fertilization patterns of oocytes treated by intracytoplasmic sperm injection", Hum Reprod 1996):
+/// Embryologists distinguish by how much pricking and suction an oolemma breaks (Nagy and others, Hum Reprod 10, 3171,
+/// 1995: 20 % of 6860 by one prick without suction, 40 % with a small and 34 % with a long suction, 6 % by more than
+/// one prick):
 ///
 ///     it breaks                    scene
 ///     before aspiration            no aspiration: the layer's force, depth or strain alone

@@ -9,6 +9,7 @@ namespace microinjection {
 
 void BoreSuction::step(const CellModel::BoreLine& line, Cover cover, double dt) {
   if (cover == Cover::kMedium) reading_ = {};
+  reading_.covered = cover != Cover::kMedium;
   const double before = reading_.volume;
   if (cover != Cover::kMedium && dt > 0) drawIn(line, cover, dt);
   // A bore with nothing of the cell in it pushes its liquid out, or draws the medium in.

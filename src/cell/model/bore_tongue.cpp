@@ -45,12 +45,19 @@ double BoreTongue::length(double suction) const { return curves_->length(std::mi
 
 double BoreTongue::volume(double suction) const { return curves_->volume(std::min(suction, strongest())); }
 
-BoreTongue solveBoreTongue(const Scene& scene) {
+Scene boreMouth(const Scene& scene) {
   if (!scene.needle.bore_radius) throw ConfigError("needle/bore_radius: is missing: nothing can be drawn in");
-  const double bore = *scene.needle.bore_radius, modulus = scene.cell.material().young_modulus;
+  const double bore = *scene.needle.bore_radius, wall = scene.needle.tip.radius - bore;
   Scene mouth = scene;
-  mouth.holding_pipette.mouth =
-      Scene::Mouth{bore, scene.needle.tip.radius, (scene.needle.tip.radius - bore) / 2, 0, {"sliding", 0, 0, 0}};
+  mouth.cell.layers = {scene.cell.layers.back()};
+  mouth.cell.layers.front().surface_tension = 0;
+  mouth.holding_pipette.mouth = Scene::Mouth{bore, scene.needle.tip.radius, wall / 2, 0, {"sliding", 0, 0, 0}};
+  return mouth;
+}
+
+BoreTongue solveBoreTongue(const Scene& scene) {
+  const Scene mouth = boreMouth(scene);
+  const double bore = *scene.needle.bore_radius, modulus = mouth.cell.material().young_modulus;
   std::vector<double> pressures;
   for (double suction = 0; suction <= kStrongest; suction += kStep) pressures.push_back(-suction * modulus);
   ConvergedTongueConfig config;

@@ -34,7 +34,11 @@ class BoreTongue {
   std::shared_ptr<const Curves> curves_;
 };
 
-/// Solves the tongue of the scene's needle on its cell: some seconds. Suctions rise in steps of a twentieth of the
+/// What the scene's needle draws in, as a cell of its own: a sphere of the innermost layer, in a mouth that is the
+/// needle's bore. @throws ConfigError when the scene's needle has no bore
+Scene boreMouth(const Scene& scene);
+
+/// Solves the tongue of boreMouth(): some seconds. Suctions rise in steps of a twentieth of the
 /// modulus as long as there is an equilibrium.
 /// @throws ConfigError when the scene's needle has no bore, or no two suctions have an equilibrium
 BoreTongue solveBoreTongue(const Scene& scene);

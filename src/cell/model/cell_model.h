@@ -89,11 +89,12 @@ class CellModel {
   };
   /// What the suction in a needle's bore has drawn in.
   struct Bore {
-    double suction = 0;  ///< Pa, that the cell at the mouth withstands
-    double length = 0;   ///< m, of the cell in the bore, from its mouth
-    double volume = 0;   ///< m^3, same
-    double flow = 0;     ///< m^3/s, into the bore
-    double tension = 0;  ///< N/m, of an intact membrane over the mouth
+    bool covered = false;  ///< the cell is before the mouth; else all numbers but the flow are 0
+    double suction = 0;    ///< Pa, that the cell at the mouth withstands
+    double length = 0;     ///< m, of the cell in the bore, from its mouth
+    double volume = 0;     ///< m^3, same
+    double flow = 0;       ///< m^3/s, into the bore
+    double tension = 0;    ///< N/m, of an intact membrane over the mouth
   };
 
   virtual ~CellModel() = default;

@@ -141,6 +141,7 @@ struct Scene {
   /// without a mouth. On the axis the needle's force then is up to 6 % from that of the held cell, and from a suction
   /// of a twentieth of the modulus on up to 3 % (doc/reference/benchmarks.md, Suction).
   Scene glued() const;
+  static constexpr double kGluedError = 0.06;  ///< relative, largest, of the needle's force on glued()
 };
 
 /// disc (flat, with a sharp edge), hemisphere, rounded_flat.

@@ -82,6 +82,7 @@ std::string InjectorModel::drawRefusal(double pressure) const {
 
 /// m^3, out of the tip within `dt`, on the way to a pressure.
 double InjectorModel::poured(double target, double dt) const {
+  if (covered_flow_) return -*covered_flow_ * dt;
   // p = target + (p0 - target) exp(-t / tau), and its integral: the flow is linear in p, so this is
   // the exact volume.
   const double tau = config_.rise_time;
@@ -90,11 +91,14 @@ double InjectorModel::poured(double target, double dt) const {
 }
 
 /// m^3, that is drawn in until the pressure rests, once the target is the rest pressure.
-double InjectorModel::coast() const { return -config_.rise_time * flow_.flow(reading_.pressure, clogging_); }
+double InjectorModel::coast() const {
+  return covered_flow_ ? 0 : -config_.rise_time * flow_.flow(reading_.pressure, clogging_);
+}
 
 /// s, until the flow turns round on the way to a pressure; infinite: it does not.
 double InjectorModel::crossing(double target) const {
   const double rest = flow_.restPressure();
+  if (covered_flow_) return INFINITY;
   if (!((reading_.pressure - rest) * (target - rest) < 0)) return INFINITY;
   return config_.rise_time * std::log((reading_.pressure - target) / (rest - target));
 }
@@ -103,6 +107,8 @@ double InjectorModel::crossing(double target) const {
 /// the pressure rests grow together at the flow of the target, evenly, since the regulator and the flow are linear.
 double InjectorModel::untilLimit(double target) const {
   if (config_.draw_limit == 0 || target >= flow_.restPressure()) return INFINITY;
+  if (covered_flow_)
+    return *covered_flow_ > 0 ? std::max(0.0, config_.draw_limit - reading_.drawn) / *covered_flow_ : INFINITY;
   const double turn = crossing(target);
   const double begin = std::isinf(turn) ? 0 : turn;
   const double drawn = begin > 0 ? std::max(0.0, reading_.drawn - poured(target, begin)) : reading_.drawn + coast();
@@ -141,7 +147,7 @@ void InjectorModel::step(double time) {
     if (left_ <= 1e-9) finish();  // s; the rounding error of the sum of steps is smaller
   }
   if (dt > 0) advance(balance_, dt);
-  reading_.flow = flow_.flow(reading_.pressure, clogging_);
+  reading_.flow = flowNow();
   reading_.interface = interfaceDepth(config_.pipette, reading_.drawn);
   if (reading_.drawn + coast() < config_.draw_limit * (1 - 1e-6)) reading_.limited = false;
 }

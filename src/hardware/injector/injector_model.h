@@ -50,12 +50,18 @@ class InjectorModel : public InjectorDevice {
   std::string drawRefusal(double pressure) const;
   double restPressure() const { return flow_.restPressure(); }  ///< Pa, gauge
 
+  /// `flow`: m^3/s, into the tip, that what lies before its mouth lets through, as a cell that is drawn in; empty: the
+  /// mouth is free.
+  void cover(const std::optional<double>& flow) { covered_flow_ = flow; }
+  double resistance() const { return flow_.resistance() * clogging_; }  ///< Pa s/m^3, of the pipette
+
   /// Injects a fault: the tip's flow resistance is `factor` times that of a clean tip. @pre factor
   /// >= 1
   void clog(double factor) { clogging_ = factor; }
 
  private:
   double poured(double target, double dt) const;
+  double flowNow() const { return covered_flow_ ? -*covered_flow_ : flow_.flow(reading_.pressure, clogging_); }
   double coast() const;
   double crossing(double target) const;
   double untilLimit(double target) const;
@@ -66,6 +72,7 @@ class InjectorModel : public InjectorDevice {
   PipetteFlow flow_;
   double balance_;  ///< Pa
   double clogging_ = 1;
+  std::optional<double> covered_flow_;  ///< m^3/s
   std::optional<InjectionPulse> pulse_;
   double left_ = 0;  ///< s, remaining time of the pulse
   double time_ = 0;  ///< s

@@ -67,6 +67,12 @@ py::dict suctionTrial(int seed, const std::string& witnesses) {
   result["false_alarms"] = trial.result.false_breaks;
   result["modulus_Pa"] = trial.of.cell.young_modulus;
   result["bore_radius_m"] = trial.of.cell.bore_radius;
+  Eigen::Matrix4Xd samples(4, trial.samples.size());
+  for (std::size_t i = 0; i < trial.samples.size(); ++i) {
+    const SuctionTrial::Sample& sample = trial.samples[i];
+    samples.col(static_cast<Eigen::Index>(i)) << sample.time, sample.suction, sample.force, sample.length;
+  }
+  result["samples"] = rowsOf(samples);
   return result;
 }
 
