@@ -27,7 +27,7 @@ namespace microinjection {
 ///      at any age), /injector/set_balance (sensor_msgs/FluidPressure: fluid_pressure, Pa, gauge,
 ///      although the message defines it as absolute; its variance is not used)
 /// Out: /injector/state (InjectorState)
-/// Services: ~reset (std_srvs/Trigger: clears fault and volume), with source simulated ~clog
+/// Services: ~reset (std_srvs/Trigger: clears fault, volume and what was drawn in), with source simulated ~clog
 ///      (std_srvs/SetBool)
 ///
 /// Parameters: config/injector.yaml

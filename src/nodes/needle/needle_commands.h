@@ -25,10 +25,14 @@ namespace microinjection {
 /// invalid ones with a reason, and keeps the operating state.
 class NeedleCommands {
  public:
+  struct Options {
+    bool allow_network = false;  ///< false: a real rig is not enabled while others can reach this machine
+    bool auto_enable = true;     ///< false: it begins DISABLED
+    std::string moved;           ///< what is commanded, for texts
+  };
   /// All references outlive this.
-  /// @param allow_network  false: a real rig is not enabled while others can reach this machine
   NeedleCommands(Cycle& cycle, const MicromanipulatorConfig& config, ManipulatorSetup& rig, Micromanipulator& model,
-                 bool allow_network);
+                 const Options& options);
 
   /// Call before the model's step: checks device, senders and network, and executes the newest
   /// servo_cp.
