@@ -61,7 +61,7 @@ MicromanipulatorNode::MicromanipulatorNode(Bus& bus, ConfigReader reader)
                             isNeedle(parameters_.tip) ? CollisionGuard::Role::kCapsule : CollisionGuard::Role::kSolid),
              parameters_.model, *rig_.device),
       commands_(cycle_, parameters_.model, rig_, model_,
-                {parameters_.allow_network, parameters_.auto_enable,
+                {parameters_.allow_network, parameters_.auto_enable, isNeedle(parameters_.tip),
                  isNeedle(parameters_.tip) ? "the needle" : "the holding pipette"}),
       publisher_(cycle_, geometry_, rig_, model_, parameters_.joint_states_rate),
       loop_state_(bus, "needle/loop_state") {

@@ -32,11 +32,12 @@ NeedleCommands::NeedleCommands(Cycle& cycle, const MicromanipulatorConfig& confi
       log_(cycle.bus()) {
   if (!options.auto_enable) state_.command(StateCommand::kDisable);
   if (!rig.inject && !options.allow_network) network_ = std::make_unique<NetworkMonitor>();
-  subscribe();
+  subscribe(options);
 }
 
-void NeedleCommands::subscribe() {
+void NeedleCommands::subscribe(const Options& options) {
   servo_.stamp_rule = StampRule::kCommand;
+  servo_.optional = !options.streamed;
   servo_.one_sender = false;  // authorize() names a second one
   // Checks each message between two steps, also those that a newer one replaces.
   servo_.onMessage([this](const geometry_msgs::PoseStamped& message, const ros::Time& now) {

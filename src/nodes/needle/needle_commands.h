@@ -28,6 +28,7 @@ class NeedleCommands {
   struct Options {
     bool allow_network = false;  ///< false: a real rig is not enabled while others can reach this machine
     bool auto_enable = true;     ///< false: it begins DISABLED
+    bool streamed = true;        ///< a controller streams set-points, so that their absence is said
     std::string moved;           ///< what is commanded, for texts
   };
   /// All references outlive this.
@@ -56,7 +57,7 @@ class NeedleCommands {
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
  private:
-  void subscribe();
+  void subscribe(const Options& options);
   void subscribeFaults();
   void onVelocity(const geometry_msgs::TwistStamped& message, const CommandSource& source);
   void onMove(const geometry_msgs::PoseStamped& message, const CommandSource& source);

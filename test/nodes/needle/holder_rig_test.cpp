@@ -61,6 +61,7 @@ TEST_P(HolderRigTest, StandsStillUntilItIsEnabledWhileTheNeedleMoves) {
   EXPECT_TRUE(arrives(needles_, {5e-6, 0, 70e-6}));
   EXPECT_TRUE(isNear(holder(), kMouth, 0.2e-6));
   EXPECT_TRUE(contains(said("holder_rig: commands"), "DISABLED"));
+  EXPECT_EQ(said("holder_rig: inputs"), "all inputs are fresh") << "nobody need stream to it";
   enable();
   moveHolder(kMouth + Eigen::Vector3d(5e-6, -3e-6, 2e-6));
   EXPECT_TRUE(arrives(holders_, kMouth + Eigen::Vector3d(5e-6, -3e-6, 2e-6)));
@@ -111,6 +112,7 @@ TEST_P(HolderRigTest, TwoCommandersAreAFaultOfTheirRigAlone) {
 
 TEST_P(HolderRigTest, ItsEndIsSaidAndTheNeedleGoesOn) {
   session_.executive().kill("holder_rig");
+  EXPECT_TRUE(contains(said("micromanipulator: inputs"), "/holder_rig/measured_cp is stale"));
   EXPECT_TRUE(contains(said("micromanipulator: other manipulator"), "the place of the other manipulator is not known"));
   moveNeedle({5e-6, 0, 70e-6});
   EXPECT_TRUE(arrives(needles_, {5e-6, 0, 70e-6}));
