@@ -130,6 +130,8 @@ class Project:
         self.topics = {'/' + topic.lstrip('/') for topic in TOPIC_CALL.findall(text)}
         self.topics |= set(re.findall(r'"(/[a-z_]+(?:/[a-z_]+)*)"', text))
         self.topics |= {'/' + topic for topic in re.findall(r'"([a-z_]+/[a-z_]+(?:/[a-z_]+)?)"', text)}
+        # A session runs the micromanipulator a second time, with these names.
+        self.topics |= {topic.replace('/needle/', '/holder_rig/') for topic in self.topics}
         self.topics |= {f'/controller/inject/{part}' for part in ('goal', 'cancel', 'status', 'feedback', 'result')}
         self.services = set()
         for path, source in self.code.items():

@@ -30,7 +30,7 @@ namespace microinjection {
 ///      although the message defines it as absolute; its variance is not used), with source simulated /cell/bore
 ///      (BoreState: a cell before the mouth lets less flow)
 /// Out: /injector/state (InjectorState)
-/// Services: ~reset (std_srvs/Trigger: clears fault and volume), with source simulated ~clog
+/// Services: ~reset (std_srvs/Trigger: clears fault, volume and what was drawn in), with source simulated ~clog
 ///      (std_srvs/SetBool)
 ///
 /// Parameters: config/injector.yaml

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <geometry_msgs/PoseStamped.h>
+
+#include <optional>
 #include <string>
 
 #include "nodes/needle/manipulator_setup.h"
@@ -15,12 +18,17 @@ namespace microinjection {
 /// reason, and each move that another command ends. When a second node commands the needle beside the first, the state
 /// is FAULT until `enable` (hardware/manipulator/command_authority.h).
 ///
+/// A session with a second manipulator runs this node twice: `holder_rig` moves the frame holding_pipette, with all
+/// topics below /holder_rig in place of /needle, and begins DISABLED. Each of the two takes the links of the other one
+/// for obstacles, where that one is by its measured_cp.
+///
 /// In:  /needle/servo_cp (PoseStamped), /needle/servo_cv (TwistStamped), /needle/move_cp
 ///      (PoseStamped), in `world`. Old ones are refused. Without a stamp the time of arrival
 ///      counts, and commands of latching publishers are refused.
 ///      /needle/state_command (StringStamped: enable, disable, pause, resume, home, unhome of
 ///      base/operating_state.h, and stop, which keeps the state). home moves nothing: the driver
 ///      finds the axes' reference positions.
+///      /other_rig/measured_cp (PoseStamped), with parameter other/tip: remapped to the other manipulator's
 ///      /needle/emulated_fault (StringStamped, see hardware/serial/fault.h), of a simulated or emulated
 ///      device
 /// Out: /needle/measured_cp (PoseStamped), /needle/measured_cv (TwistStamped): the tip in `world`,
@@ -49,6 +57,10 @@ class MicromanipulatorNode {
     std::string rig = "sim";
     bool emulated = false;
     bool allow_network = false;
+    bool auto_enable = true;
+    std::string tip = "needle_tip";  ///< link of the URDF
+    std::string other_tip;           ///< of a second manipulator; empty: there is none
+    double other_tilt = 0;           ///< rad, of its pipette
     MicromanipulatorConfig model;
     static Parameters read(ConfigReader& reader);
   };
@@ -56,15 +68,19 @@ class MicromanipulatorNode {
   MicromanipulatorNode(Bus& bus, ConfigReader reader);
   void step(const Cycle::Tick& tick);
   void publishState(const Cycle::Tick& tick);
+  void followOther();
+  void reportOther(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   Parameters parameters_;
   ManipulatorGeometry geometry_;
+  std::optional<ManipulatorGeometry> other_geometry_;
   Cycle cycle_;
   ManipulatorSetup rig_;
   Micromanipulator model_;
   NeedleCommands commands_;
   NeedlePublisher publisher_;
   LoopStatePublisher loop_state_;
+  Input<geometry_msgs::PoseStamped>* other_ = nullptr;  ///< null without a second manipulator
 };
 
 }  // namespace microinjection

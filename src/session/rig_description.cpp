@@ -22,6 +22,7 @@ namespace {
 using tinyxml2::XMLElement;
 
 constexpr char kStart[] = "world_to_manipulator_base", kMouth[] = "world_to_holding_pipette", kDown[] = "manipulator_z";
+constexpr char kHoldingBase[] = "holding_base", kHoldingStage[] = "holding_stage_z";
 constexpr double kFloor = -60e-6;   // m, of the dish in the file
 constexpr double kMouthFactor = 3;  // outer radius of a holding pipette over that of its mouth
 const char* const kBelow[] = {"world_to_dish", "world_to_objective"};  // joints that sink with the floor
@@ -68,6 +69,16 @@ void setHeight(XMLElement* joint, double height) {
   origin->SetAttribute("xyz", (place[0] + " " + place[1] + " " + numberText(height)).c_str());
 }
 
+/// Returns the text of the file.
+std::string parseInto(tinyxml2::XMLDocument& document, const std::string& path) {
+  std::ifstream in(path);
+  if (!in) throw ConfigError(path + ": cannot be read");
+  std::string text(std::istreambuf_iterator<char>(in), {});
+  if (document.Parse(text.c_str()) != tinyxml2::XML_SUCCESS || !document.RootElement())
+    throw ConfigError(path + ": is no URDF: " + document.ErrorStr());
+  return text;
+}
+
 }  // namespace
 
 bool RigDescription::Sizes::operator==(const Sizes& other) const {
@@ -77,11 +88,7 @@ bool RigDescription::Sizes::operator==(const Sizes& other) const {
 
 RigDescription::RigDescription(const std::string& path)
     : path_(path), document_(std::make_unique<tinyxml2::XMLDocument>()) {
-  std::ifstream in(path);
-  if (!in) throw ConfigError(path + ": cannot be read");
-  file_.assign(std::istreambuf_iterator<char>(in), {});
-  if (document_->Parse(file_.c_str()) != tinyxml2::XML_SUCCESS)
-    throw ConfigError(path + ": is no URDF: " + document_->ErrorStr());
+  file_ = parseInto(*document_, path);
   sizes_.start_height = heightOf(joint(kStart));
   sizes_.mouth_height = heightOf(joint(kMouth));
   sizes_.floor_height = kFloor;
@@ -107,6 +114,32 @@ XMLElement* RigDescription::joint(const std::string& name) const {
   XMLElement* found = named(*document_, "joint", name);
   if (!found) throw ConfigError(path_ + ": has no joint " + name);
   return found;
+}
+
+void RigDescription::carryHolder(const std::string& path) {
+  axes_ = std::make_unique<tinyxml2::XMLDocument>();
+  parseInto(*axes_, path);
+  for (const char* link : {kHoldingBase, kHoldingStage})
+    if (!named(*axes_, "link", link)) throw ConfigError(path + ": has no link " + link);
+}
+
+/// The fixed joint of the holding pipette now has the axes behind it, and its turn is at their end.
+void RigDescription::insertAxes(tinyxml2::XMLDocument& fitted) const {
+  for (const XMLElement* part = axes_->RootElement()->FirstChildElement(); part; part = part->NextSiblingElement())
+    fitted.RootElement()->InsertEndChild(part->DeepClone(&fitted));
+  XMLElement* mouth = named(fitted, "joint", kMouth);
+  XMLElement* origin = child(mouth, {"origin"});
+  const char* turn = origin->Attribute("rpy");
+  const std::string rpy = turn ? turn : "0 0 0";
+  mouth->SetAttribute("name", "world_to_holding_base");
+  child(mouth, {"child"})->SetAttribute("link", kHoldingBase);
+  origin->DeleteAttribute("rpy");
+  XMLElement* last = fitted.RootElement()->InsertNewChildElement("joint");
+  last->SetAttribute("name", "holding_stage_z_to_holding_pipette");
+  last->SetAttribute("type", "fixed");
+  last->InsertNewChildElement("parent")->SetAttribute("link", kHoldingStage);
+  last->InsertNewChildElement("child")->SetAttribute("link", "holding_pipette");
+  last->InsertNewChildElement("origin")->SetAttribute("rpy", rpy.c_str());
 }
 
 void RigDescription::scale(double factor, double mouth_radius) {
@@ -159,7 +192,7 @@ std::vector<std::string> RigDescription::misfits(double radius, double depth) co
   return found;
 }
 
-bool RigDescription::changed() const { return !(sizes_ == of_file_) || cell_factor_ != 1; }
+bool RigDescription::changed() const { return !(sizes_ == of_file_) || cell_factor_ != 1 || axes_; }
 
 std::string RigDescription::text() const { return changed() ? fittedText() : file_; }
 
@@ -193,6 +226,7 @@ std::string RigDescription::fittedText() const {
       origin->SetAttribute("xyz", ("0 0 " + numberText(sizes_.pipette_length / 2)).c_str());
     }
   }
+  if (axes_) insertAxes(fitted);
   tinyxml2::XMLPrinter printer;
   fitted.Print(&printer);
   return printer.CStr();

@@ -37,6 +37,9 @@ class RigDescription {
 
   /// Fits the sizes to a cell of `factor` times the size, whose holder has `mouth_radius` (m; 0: unknown).
   void scale(double factor, double mouth_radius);
+  /// Puts axes under the holding pipette, whose joint was fixed: those of a file like urdf/holding_axes.urdf, which has
+  /// a link holding_base and, behind three axes, a link holding_stage_z.
+  void carryHolder(const std::string& axes);
   /// Sets sizes by their names. Errors, a line each, name the key after rig/.
   void override(const YAML::Node& values, std::vector<std::string>& errors);
   /// A line for everything that does not go together with a cell of `radius` (m), into which the needle may go by
@@ -50,9 +53,11 @@ class RigDescription {
  private:
   tinyxml2::XMLElement* joint(const std::string& name) const;
   std::string fittedText() const;
+  void insertAxes(tinyxml2::XMLDocument& fitted) const;
 
   std::string path_, file_;
   std::unique_ptr<tinyxml2::XMLDocument> document_;
+  std::unique_ptr<tinyxml2::XMLDocument> axes_;  ///< of the holding pipette; null: it is fixed
   Sizes sizes_, of_file_;
   double axis_speed_ = 0, cell_factor_ = 1;
 };

@@ -198,34 +198,13 @@ std::string SessionPlaces::at(const std::string& key) const {
 }
 
 const std::vector<std::string>& overridableNodes() {
-  static const std::vector<std::string> nodes = {"rig",
-                                                 "calibration",
-                                                 "camera",
-                                                 "cell_estimator",
-                                                 "cell_simulator",
-                                                 "display",
-                                                 "focus",
-                                                 "force_sensor",
-                                                 "force_watchdog",
-                                                 "haptic_bridge",
-                                                 "haptic_device",
-                                                 "holder",
-                                                 "image_recorder",
-                                                 "injection_controller",
-                                                 "injector",
-                                                 "keyboard_hand",
-                                                 "link_emulator",
-                                                 "micromanipulator",
-                                                 "microscope",
-                                                 "notebook",
-                                                 "virtual_hand",
-                                                 "readiness",
-                                                 "session_recorder",
-                                                 "teleoperation_follower",
-                                                 "touch",
-                                                 "true_cell",
-                                                 "vision",
-                                                 "visual_servo"};
+  static const std::vector<std::string> nodes = {
+      "rig",           "calibration",   "camera",        "cell_estimator",   "cell_simulator",
+      "display",       "focus",         "force_sensor",  "force_watchdog",   "haptic_bridge",
+      "haptic_device", "holder",        "holder_rig",    "image_recorder",   "injection_controller",
+      "injector",      "keyboard_hand", "link_emulator", "micromanipulator", "microscope",
+      "notebook",      "virtual_hand",  "readiness",     "session_recorder", "teleoperation_follower",
+      "touch",         "true_cell",     "vision",        "visual_servo"};
   return nodes;
 }
 
@@ -246,6 +225,13 @@ std::string Session::text() const {
                              .text("urdf", rig.urdf)
                              .flag("allow_network", rig.allow_network)
                              .lines());
+  keys.raw("holder_rig", "\n" + Group(2)
+                                    .text("name", holder_rig.name)
+                                    .text("port", holder_rig.port)
+                                    .text("namespace", holder_rig.name_space)
+                                    .text("config", holder_rig.present() ? holder_rig.config : "auto")
+                                    .text("urdf", holder_rig.present() ? holder_rig.urdf : "auto")
+                                    .lines());
   keys.raw("sensor", sensorText(sensor)).text("injector", injector).text("holder", holder).raw("hand", handText(hand));
   keys.raw("force", "\n" + Group(2).text("controller", force.controller).text("hand", force.hand).lines());
   keys.raw("injection", "\n" + Group(2)

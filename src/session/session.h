@@ -38,19 +38,23 @@ struct SessionPlaces {
 struct Session {
   static constexpr int kVersion = 1;  ///< of the files
 
-  struct Rig {
-    std::string name = "sim";         ///< sim, a name of config/rigs, or emulated_NAME
+  struct Manipulator {
+    std::string name = "none";        ///< sim, a name of config/rigs, emulated_NAME, or none
     std::string port = "auto";        ///< auto: that of config, or the emulator's
     std::string name_space = "auto";  ///< of external: of its node's topics; auto: that of config
-    std::string config;               ///< path of the device's parameters
-    std::string urdf;                 ///< path
-    bool allow_network = true;
+    std::string config;               ///< path of the device's parameters; empty with none
+    std::string urdf;                 ///< path: of the rig, or of the holding pipette's axes alone; empty with none
 
+    bool present() const { return name != "none"; }
     bool simulated() const { return name == "sim"; }
     bool emulated() const { return name.rfind("emulated_", 0) == 0; }
     bool external() const { return name == "external"; }
-    bool real() const { return !simulated() && !emulated(); }
-    std::string device() const { return emulated() ? name.substr(9) : name; }  ///< sim, or a name of config/rigs
+    bool real() const { return present() && !simulated() && !emulated(); }
+    std::string device() const { return emulated() ? name.substr(9) : name; }  ///< sim, none, or a name of config/rigs
+  };
+  struct Rig : Manipulator {
+    Rig() { name = "sim"; }
+    bool allow_network = true;
   };
   struct Sensor {
     std::string source = "simulated";                        ///< simulated, serial, topic, none
@@ -115,6 +119,7 @@ struct Session {
   std::string model = "auto";  ///< auto (the cheapest that meets the scene's requirements), surrogate, live or explicit
   bool estimator = false;
   Rig rig;
+  Manipulator holder_rig;  ///< of the holding pipette
   Sensor sensor;
   std::string injector = "simulated";
   std::string holder = "none";  ///< none, sim, a name of config/injectors, emulated_NAME, serial

@@ -13,6 +13,7 @@ class Check {
 
   void run() {
     checkHidden();
+    checkHolder();
     checkEstimator();
     checkForces();
     checkInjection();
@@ -34,6 +35,17 @@ class Check {
   void checkHidden() {
     if (!session_.hidden.empty() && session_.rig.real())
       refuse("hidden", session_.hidden, rig(), "with sim or an emulated rig; a real one has its own cell");
+  }
+
+  /// Two drivers on one line would each hear the other's answers.
+  void checkHolder() {
+    const Session::Manipulator &needle = session_.rig, &holder = session_.holder_rig;
+    if (!needle.real() || !holder.real()) return;
+    const bool same_node = needle.external() && holder.external() && needle.name_space == holder.name_space;
+    if (same_node) refuse("holder_rig/namespace", holder.name_space, rig(), "another one than rig/namespace");
+    const bool has_ports = !needle.external() && !holder.external();
+    const bool same_port = needle.port == holder.port && (needle.port != "auto" || needle.config == holder.config);
+    if (has_ports && same_port) refuse("holder_rig/port", holder.port, rig(), "another one than rig/port");
   }
 
   void checkEstimator() {

@@ -38,6 +38,7 @@ SessionChoices::SessionChoices(const std::string& package)
   };
   devices.erase(std::remove_if(devices.begin(), devices.end(), is_other), devices.end());
   rigs = withEmulated({"sim"}, devices, {kExternal});
+  holder_rigs = withFirst({"none"}, rigs);
   const Names pressures = namesIn(package, "config/injectors");
   injectors = withEmulated({"auto", "simulated"}, pressures, {"serial", "none"});
   holders = withEmulated({"none", "sim"}, pressures, {"serial"});

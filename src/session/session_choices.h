@@ -10,8 +10,8 @@ inline constexpr char kAuto[] = "auto";
 
 /// The allowed values of the keys of a session. Devices are those that have a file in the package.
 struct SessionChoices {
-  std::vector<std::string> models, rigs, sensors, injectors, holders, hands, position_types, controller_forces,
-      hand_forces, modes, schemes, cameras, consoles;
+  std::vector<std::string> models, rigs, holder_rigs, sensors, injectors, holders, hands, position_types,
+      controller_forces, hand_forces, modes, schemes, cameras, consoles;
 
   explicit SessionChoices(const std::string& package);
 };

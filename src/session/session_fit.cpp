@@ -67,6 +67,7 @@ class Fit {
   }
 
   SessionFit run() {
+    if (session_.holder_rig.present()) rig_.carryHolder(session_.holder_rig.urdf);
     rig_.scale(cell_.lengthScale(), cell_.mouth_radius);
     scaleAll();
     if (cell_.puncture_force > 0) set(kController, "force_limit", roundedParameter(kGuard * cell_.puncture_force));

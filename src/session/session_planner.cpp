@@ -26,6 +26,7 @@ class Planner {
     const SessionFit fit = SessionFit::of(session_, device_);
     plan_.files.push_back(session_.cell);
     plan_.files.push_back(session_.rig.urdf);
+    if (session_.holder_rig.present()) plan_.files.push_back(session_.holder_rig.urdf);
     addRig();
     addSensor();
     addCells();
@@ -43,6 +44,7 @@ class Planner {
       if (fitted.IsDefined()) mergeParameters(node.parameters, fitted);
       addDeviceRemaps(node.remaps);
     }
+    shareTilt();
     for (ForeignProcess& process : plan_.processes) addDeviceRemaps(process.remaps);
     plan_.parameters["robot_description"] = textValue(fit.robot_description);
     plan_.text = fit.text;
@@ -50,6 +52,17 @@ class Planner {
   }
 
  private:
+  /// The holding pipette's manipulator has the needle for an obstacle, as that is tilted.
+  void shareTilt() {
+    NodePlan *needle = nullptr, *holder = nullptr;
+    for (NodePlan& node : plan_.nodes) {
+      if (node.name == "micromanipulator") needle = &node;
+      if (node.name == "holder_rig") holder = &node;
+    }
+    if (needle && holder)
+      setParameter(holder->parameters, "other/tilt", parameterAt(needle->parameters, "pipette_tilt"));
+  }
+
   using Remaps = std::map<std::string, std::string>;
 
   YAML::Node load(const std::string& path) {
@@ -86,28 +99,52 @@ class Planner {
   }
 
   void addRig() {
-    const Session::Rig& rig = session_.rig;
-    const std::string terminal = runtimeFolder() + "/emulated_" + rig.device();
+    NodePlan& needle = addManipulator("micromanipulator", session_.rig, session_.rig.name);
+    if (session_.holder_rig.present()) {
+      setText(needle, "other/tip", "holding_pipette");
+      needle.remaps["/other_rig/measured_cp"] = "/holder_rig/measured_cp";
+      addHolderRig();
+    }
+    ForeignProcess frames;
+    frames.name = frames.package = frames.program = "robot_state_publisher";
+    plan_.processes.push_back(frames);
+  }
+
+  /// The same node a second time, with all topics below a name of its own.
+  void addHolderRig() {
+    NodePlan& node = addManipulator("holder_rig", session_.holder_rig, "holder_" + session_.holder_rig.name);
+    setText(node, "tip", "holding_pipette");
+    setText(node, "other/tip", "needle_tip");
+    setFlag(node, "auto_enable", false);
+    for (const char* topic :
+         {"servo_cp", "servo_cv", "move_cp", "state_command", "emulated_fault", "measured_cp", "measured_cv",
+          "setpoint_cp", "true_cp", "abilities", "operating_state", "loop_state", "setpoint_trace"})
+      node.remaps[std::string("/needle/") + topic] = std::string("/holder_rig/") + topic;
+    node.remaps["/other_rig/measured_cp"] = "/needle/measured_cp";
+  }
+
+  /// `emulator`: name of the process of an emulated one.
+  NodePlan& addManipulator(const std::string& name, const Session::Manipulator& rig, const std::string& emulator_name) {
+    const std::string terminal = runtimeFolder() + "/" + emulator_name;
     const bool is_process = rig.emulated() && live();
-    NodePlan& node = addConfigured("micromanipulator");
+    NodePlan& node = add(name, "micromanipulator");
+    mergeParameters(node.parameters, load(package("config/micromanipulator.yaml")));
     setParameter(node.parameters, "device", load(rig.config));
     setText(node, "rig", rig.device());
-    setFlag(node, "allow_network", rig.allow_network);
+    setFlag(node, "allow_network", session_.rig.allow_network);
     setFlag(node, "emulated", rig.emulated() && !is_process);
     if (rig.real() && !rig.external() && rig.port != "auto") setText(node, "device/port/path", rig.port);
     if (rig.external() && rig.name_space != "auto") setText(node, "device/namespace", rig.name_space);
     if (rig.emulated()) setText(node, "device/port/path", terminal);
     if (is_process) {
       ForeignProcess emulator;
-      emulator.name = rig.name;
+      emulator.name = emulator_name;
       emulator.package = "cell_microinjection";
       emulator.program = "emulate";
       emulator.arguments = {rig.device(), "--link", terminal};
       plan_.processes.push_back(emulator);
     }
-    ForeignProcess frames;
-    frames.name = frames.package = frames.program = "robot_state_publisher";
-    plan_.processes.push_back(frames);
+    return node;
   }
 
   void addSensor() {

@@ -14,15 +14,19 @@ const std::vector<std::string> kNone = {""};
 constexpr char kRigs[] = "config/rigs", kCells[] = "config/cells", kMotions[] = "config/hand_motions";
 const Range kLayers = Range::closed(1, 10);
 
-void readRig(LayerSection section, SessionDraft& draft, const SessionChoices& choices) {
-  Session::Rig& rig = draft.session.rig;
+void readManipulator(LayerSection& section, Session::Manipulator& rig, const std::vector<std::string>& names) {
   const std::string before = rig.device();
-  section.choice("name", rig.name, choices.rigs);
+  section.choice("name", rig.name, names);
   if (rig.device() != before) rig.port = rig.name_space = rig.config = kAuto;  // those of another device
   section.path("port", rig.port, kAutomatic);
   section.text("namespace", rig.name_space);
   section.fileOrName("config", rig.config, kRigs, kAutomatic);
   section.existingFile("urdf", rig.urdf, kAutomatic);
+}
+
+void readRig(LayerSection section, SessionDraft& draft, const SessionChoices& choices) {
+  Session::Rig& rig = draft.session.rig;
+  readManipulator(section, rig, choices.rigs);
   section.flag("allow_network", draft.allow_network);
 }
 
@@ -88,9 +92,9 @@ SessionDraft::SessionDraft(const std::string& package) {
   session.cell = package + "/" + kCells + "/mouse_oocyte_injection.yaml";
   session.hand.motion = package + "/" + kMotions + "/indent_and_retract.yaml";
   for (std::string* automatic :
-       {&session.rig.config, &session.rig.urdf, &session.sensor.source, &session.injector, &session.hand.config,
-        &session.force.hand, &session.injection.mode, &session.camera.config, &session.record.history,
-        &session.record.training, &session.notebook})
+       {&session.rig.config, &session.rig.urdf, &session.holder_rig.config, &session.holder_rig.urdf,
+        &session.sensor.source, &session.injector, &session.hand.config, &session.force.hand, &session.injection.mode,
+        &session.camera.config, &session.record.history, &session.record.training, &session.notebook})
     *automatic = kAuto;
   session.overrides = YAML::Node(YAML::NodeType::Map);
 }
@@ -104,6 +108,8 @@ void readSessionKeys(ConfigReader& reader, const std::string& folder, SessionDra
   section.choice("model", session.model, choices.models);
   section.flag("estimator", session.estimator);
   readRig(section.section("rig"), draft, choices);
+  LayerSection holder_rig = section.section("holder_rig");
+  readManipulator(holder_rig, session.holder_rig, choices.holder_rigs);
   LayerSection sensor = section.section("sensor");
   sensor.choice("source", session.sensor.source, choices.sensors);
   sensor.numbers("mounting", session.sensor.mounting);
@@ -131,6 +137,10 @@ Session resolved(SessionDraft draft) {
   const std::string& package = session.package;
   const bool modelled = !session.rig.real();
   setIfAuto(session.rig.config, package + "/" + kRigs + "/" + session.rig.device() + ".yaml");
+  const Session::Manipulator& holder_rig = session.holder_rig;
+  const bool has_rig = holder_rig.present();
+  setIfAuto(session.holder_rig.config, has_rig ? package + "/" + kRigs + "/" + holder_rig.device() + ".yaml" : "");
+  setIfAuto(session.holder_rig.urdf, has_rig ? package + "/urdf/holding_axes.urdf" : "");
   setIfAuto(session.rig.urdf, package + "/urdf/rig.urdf");
   session.rig.allow_network = draft.allow_network.value_or(modelled);
   setIfAuto(session.sensor.source, modelled ? "simulated" : "serial");

@@ -9,15 +9,17 @@ import unittest
 
 import rospy
 import rostest
-from cell_microinjection.msg import InjectorState
+from cell_microinjection.msg import HolderState, InjectorState
 from geometry_msgs.msg import PoseStamped, WrenchStamped
 
 from case import case
+from killable_nodes import parameters
 from live_chain import TIMEOUT, Hand, HandProcess, LiveChain, Master, until
 from messages import position
 
 FOLLOWED = ("hand", "haptic_bridge", "injection_controller", "micromanipulator", "cell_simulator")  # each is needed
-OTHERS = {"force_sensor": ("/force_sensor/measured_cf", WrenchStamped), "injector": ("/injector/state", InjectorState)}
+OTHERS = {"force_sensor": ("/force_sensor/measured_cf", WrenchStamped), "injector": ("/injector/state", InjectorState),
+          "holder": ("/holder/state", HolderState)}
 FASTEST = 1e-3 * Hand.SPEED  # m/s, of the needle: a thousandth of the hand's
 STILL = 2e-9  # m
 AT_REST = 50  # readings in a row, 20 ms apart
@@ -28,7 +30,7 @@ class FaultsTest(unittest.TestCase):
     def setUpClass(cls):
         cls.master = Master()
         rospy.init_node("faults")
-        cls.chain = LiveChain(hand=HandProcess)
+        cls.chain = LiveChain(hand=HandProcess, changes={"holder": parameters("holder")})
         for topic, kind in (("/needle/true_cp", PoseStamped), *OTHERS.values()):
             cls.chain.follow(topic, kind)
 

@@ -83,6 +83,66 @@ TEST_F(SessionPlanTest, AnEmulatedRigIsAProcessOrInside) {
   EXPECT_EQ(at(plan({"rig.config:=imperfect"}), "micromanipulator", "device/backlash"), "1.0e-6");
 }
 
+TEST_F(SessionPlanTest, AHolderHasItsPressureLine) {
+  EXPECT_FALSE(takesPart(plan(), "holder"));
+  const SessionPlan simulated = plan({"holder:=sim"}), real = plan({"holder:=voltage", "rig.name:=zaber"});
+  EXPECT_EQ(at(simulated, "holder", "source"), "simulated");
+  EXPECT_EQ(at(simulated, "holder", "auto_enable"), "true");
+  EXPECT_EQ(at(simulated, "injector", "source"), "simulated");
+  EXPECT_EQ(at(real, "holder", "source"), "serial");
+  EXPECT_EQ(at(real, "holder", "auto_enable"), "false");
+  EXPECT_EQ(at(real, "holder", "serial/pressure_unit"), "5000");
+  EXPECT_EQ(at(real, "holder", "line/tube_compliance"), "1.0e-14");
+  EXPECT_EQ(at(plan({"holder:=emulated_arduino"}), "holder", "emulated"), "arduino");
+  EXPECT_EQ(at(plan({"holder:=sim", "record.folder:=/out"}), "session_recorder", "holder"), "true");
+  EXPECT_EQ(at(plan({"record.folder:=/out"}), "session_recorder", "holder"), "-");
+}
+
+TEST_F(SessionPlanTest, ASecondManipulatorCarriesTheHoldingPipette) {
+  const SessionPlan none = plan();
+  EXPECT_FALSE(takesPart(none, "holder_rig"));
+  EXPECT_EQ(at(none, "micromanipulator", "other/tip"), "-");
+  EXPECT_TRUE(none.node("micromanipulator")->remaps.empty());
+  EXPECT_EQ(none.parameters["robot_description"].Scalar().find("holding_base"), std::string::npos);
+
+  const SessionPlan two =
+      plan({"holder_rig.name:=sim", "overrides.micromanipulator.pipette_tilt:=0.5", "rig.name:=emulated_zaber"});
+  const NodePlan& holder = *two.node("holder_rig");
+  EXPECT_EQ(holder.program, "micromanipulator");
+  EXPECT_EQ(holder.remaps.at("/needle/move_cp"), "/holder_rig/move_cp");
+  EXPECT_EQ(holder.remaps.at("/other_rig/measured_cp"), "/needle/measured_cp");
+  EXPECT_EQ(two.node("micromanipulator")->remaps.at("/other_rig/measured_cp"), "/holder_rig/measured_cp");
+  EXPECT_EQ(at(two, "holder_rig", "tip"), "holding_pipette");
+  EXPECT_EQ(at(two, "holder_rig", "auto_enable"), "false");
+  EXPECT_EQ(at(two, "holder_rig", "other/tilt"), "0.5");
+  EXPECT_EQ(at(two, "holder_rig", "rig"), "sim");
+  EXPECT_EQ(at(two, "micromanipulator", "rig"), "zaber");
+  EXPECT_NE(two.parameters["robot_description"].Scalar().find("holding_stage_z_to_holding_pipette"), std::string::npos);
+
+  const SessionPlan same = plan({"holder_rig.name:=emulated_zaber", "rig.name:=emulated_zaber"});
+  EXPECT_NE(at(same, "micromanipulator", "device/port/path"), at(same, "holder_rig", "device/port/path"));
+  EXPECT_TRUE(takesPart(same, "emulated_zaber"));
+  EXPECT_TRUE(takesPart(same, "holder_emulated_zaber"));
+  EXPECT_EQ(at(plan({"holder_rig.name:=zaber", "holder_rig.port:=/dev/ttyUSB1"}), "holder_rig", "device/port/path"),
+            "/dev/ttyUSB1");
+}
+
+TEST_F(SessionPlanTest, TwoRigsHaveTwoLines) {
+  const auto refused = [](const Names& arguments) { return refusalOf([&] { plan(arguments); }); };
+  EXPECT_NE(refused({"rig.name:=zaber", "holder_rig.name:=zaber"})
+                .find("holder_rig/port = auto with rig/name = zaber: must be another one than rig/port"),
+            std::string::npos);
+  EXPECT_EQ(refused({"rig.name:=zaber", "holder_rig.name:=zaber", "holder_rig.port:=/dev/ttyUSB1"}), "");
+  EXPECT_EQ(refused({"rig.name:=zaber", "holder_rig.name:=mp285"}), "");
+  EXPECT_NE(refused({"rig.name:=zaber", "rig.port:=/dev/a", "holder_rig.name:=mp285", "holder_rig.port:=/dev/a"}), "");
+  EXPECT_NE(refused({"rig.name:=external", "holder_rig.name:=external"}).find("holder_rig/namespace"),
+            std::string::npos);
+  EXPECT_EQ(refused({"rig.name:=external", "holder_rig.name:=external", "holder_rig.namespace:=/my_holder"}), "");
+  EXPECT_NE(refused({"holder_rig.name:=sim", "holder_rig.urdf:=" + kPackage + "/urdf/rig.urdf"})
+                .find("has no link holding_base"),
+            std::string::npos);
+}
+
 TEST_F(SessionPlanTest, AHiddenCellIsAtTheNeedleAndTheBelievedOneIsServed) {
   const SessionPlan session = plan({"hidden:=zebrafish_embryo", "camera.source:=sim", "estimator:=true"});
   EXPECT_EQ(at(session, "true_cell", "scene"), kPackage + "/config/cells/zebrafish_embryo.yaml");

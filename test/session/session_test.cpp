@@ -70,6 +70,7 @@ TEST_F(SessionTest, AcceptsEachAllowedValue) {
                                                                    {"sensor.source", choices.sensors},
                                                                    {"injector", choices.injectors},
                                                                    {"holder", choices.holders},
+                                                                   {"holder_rig.name", choices.holder_rigs},
                                                                    {"hand.device", choices.hands},
                                                                    {"hand.position_type", choices.position_types},
                                                                    {"force.controller", choices.controller_forces},

@@ -36,12 +36,12 @@ void addOutside(std::ostringstream& reason, const std::string& joint, double val
 
 }  // namespace
 
-ManipulatorGeometry ManipulatorGeometry::fromUrdf(const std::string& xml, double tilt_angle) {
+ManipulatorGeometry ManipulatorGeometry::fromUrdf(const std::string& xml, double tilt_angle, const std::string& tip) {
   const urdf::ModelInterfaceSharedPtr model = parseRig(xml);
   ManipulatorGeometry geometry;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   std::size_t axis = 0;
-  for (const auto& joint : chainTo(*model, "needle_tip")) {
+  for (const auto& joint : chainTo(*model, tip)) {
     pose = pose * toEigen(joint->parent_to_joint_origin_transform);
     if (joint->type == urdf::Joint::FIXED) continue;
     if (joint->type == urdf::Joint::PRISMATIC && axis < 3) {
@@ -56,7 +56,7 @@ ManipulatorGeometry ManipulatorGeometry::fromUrdf(const std::string& xml, double
                         ": allowed are three prismatic joints, behind them one revolute joint, the others fixed");
     }
   }
-  if (axis != 3) throw ConfigError("URDF: between world and needle_tip must be three prismatic joints");
+  if (axis != 3) throw ConfigError("URDF: between world and " + tip + " must be three prismatic joints");
   if (std::abs(geometry.directions.determinant()) < 1e-3)
     throw ConfigError("URDF: the three axes must not lie in a plane");
   if (geometry.tilt.joint.empty() && tilt_angle != 0)

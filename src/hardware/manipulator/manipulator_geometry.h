@@ -6,7 +6,8 @@
 
 namespace microinjection {
 
-/// Kinematics and limits of a three-axis micromanipulator. Its URDF is their only source.
+/// Kinematics and limits of a three-axis micromanipulator. Its URDF is their only source. What is called the tip is
+/// that of the needle, or the mouth of the holding pipette, with a manipulator of its own.
 struct ManipulatorGeometry {
   struct Axis {
     std::string joint;
@@ -25,14 +26,15 @@ struct ManipulatorGeometry {
   std::array<Axis, 3> axes;
   Tilt tilt;
   Eigen::Matrix3d directions;     ///< columns: unit vectors of the axes in `world`
-  Eigen::Isometry3d tip_at_zero;  ///< pose of `needle_tip` in `world` with all three joints at 0, tilted
+  Eigen::Isometry3d tip_at_zero;  ///< pose of the tip in `world` with all three joints at 0, tilted
 
-  /// Reads the chain from link `world` to link `needle_tip`: exactly three prismatic joints, then
+  /// Reads the chain from link `world` to link `tip`: exactly three prismatic joints, then
   /// at most one revolute joint; all other joints are fixed.
   /// @param tilt_angle  rad, of the revolute joint
   /// @throws ConfigError for a text that is no URDF, another chain, invalid limits, or a tilt
   ///   beyond its limits.
-  static ManipulatorGeometry fromUrdf(const std::string& xml, double tilt_angle = 0);
+  static ManipulatorGeometry fromUrdf(const std::string& xml, double tilt_angle = 0,
+                                      const std::string& tip = "needle_tip");
 
   /// m/s and m/s^2, the largest of the axes.
   Eigen::Vector3d velocities() const { return {axes[0].velocity, axes[1].velocity, axes[2].velocity}; }
@@ -40,7 +42,7 @@ struct ManipulatorGeometry {
 
   /// Tip position in `world` (m) from joint positions (m).
   Eigen::Vector3d tip(const Eigen::Vector3d& joints) const;
-  /// Pose of `needle_tip` in `world` from joint positions (m).
+  /// Pose of the tip in `world` from joint positions (m).
   Eigen::Isometry3d tipPose(const Eigen::Vector3d& joints) const;
   /// Joint positions (m) for a tip position in `world` (m), without limits.
   Eigen::Vector3d joints(const Eigen::Vector3d& tip) const;

@@ -69,6 +69,8 @@ class Micromanipulator {
 
   /// Advances itself and the device by dt (s, > 0) to `time` (s), which never decreases.
   void step(double time, double dt);
+  /// Joint positions (m) of a second manipulator, whose links are obstacles.
+  void placeOther(const Eigen::Vector3d& joints) { guard_.placeOther(joints); }
 
   /// Measured by the device's axes; empty while the position is unknown.
   std::optional<Eigen::Isometry3d> tipPose() const;    ///< `needle_tip` in `world`

@@ -20,7 +20,7 @@ bool stopsNeedle(const std::string& command) {
 }  // namespace
 
 NeedleCommands::NeedleCommands(Cycle& cycle, const MicromanipulatorConfig& config, ManipulatorSetup& rig,
-                               Micromanipulator& model, bool allow_network)
+                               Micromanipulator& model, const Options& options)
     : cycle_(cycle),
       config_(config),
       rig_(rig),
@@ -28,13 +28,16 @@ NeedleCommands::NeedleCommands(Cycle& cycle, const MicromanipulatorConfig& confi
       servo_(cycle.input<geometry_msgs::PoseStamped>("needle/servo_cp", InputPhase::kDrives, config.command_timeout)),
       trace_(cycle.output<sensor_msgs::TimeReference>("needle/setpoint_trace")),
       repeated_(cycle.bus(), kNeedleCommandTopic),
+      authority_(options.moved),
       log_(cycle.bus()) {
-  if (!rig.inject && !allow_network) network_ = std::make_unique<NetworkMonitor>();
-  subscribe();
+  if (!options.auto_enable) state_.command(StateCommand::kDisable);
+  if (!rig.inject && !options.allow_network) network_ = std::make_unique<NetworkMonitor>();
+  subscribe(options);
 }
 
-void NeedleCommands::subscribe() {
+void NeedleCommands::subscribe(const Options& options) {
   servo_.stamp_rule = StampRule::kCommand;
+  servo_.optional = !options.streamed;
   servo_.one_sender = false;  // authorize() names a second one
   // Checks each message between two steps, also those that a newer one replaces.
   servo_.onMessage([this](const geometry_msgs::PoseStamped& message, const ros::Time& now) {

@@ -25,10 +25,15 @@ namespace microinjection {
 /// invalid ones with a reason, and keeps the operating state.
 class NeedleCommands {
  public:
+  struct Options {
+    bool allow_network = false;  ///< false: a real rig is not enabled while others can reach this machine
+    bool auto_enable = true;     ///< false: it begins DISABLED
+    bool streamed = true;        ///< a controller streams set-points, so that their absence is said
+    std::string moved;           ///< what is commanded, for texts
+  };
   /// All references outlive this.
-  /// @param allow_network  false: a real rig is not enabled while others can reach this machine
   NeedleCommands(Cycle& cycle, const MicromanipulatorConfig& config, ManipulatorSetup& rig, Micromanipulator& model,
-                 bool allow_network);
+                 const Options& options);
 
   /// Call before the model's step: checks device, senders and network, and executes the newest
   /// servo_cp.
@@ -52,7 +57,7 @@ class NeedleCommands {
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
  private:
-  void subscribe();
+  void subscribe(const Options& options);
   void subscribeFaults();
   void onVelocity(const geometry_msgs::TwistStamped& message, const CommandSource& source);
   void onMove(const geometry_msgs::PoseStamped& message, const CommandSource& source);

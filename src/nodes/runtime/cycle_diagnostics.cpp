@@ -51,7 +51,7 @@ void CycleDiagnostics::publishStatistics() {
   cell_microinjection::CycleStatistics statistics;
   statistics.header.stamp = now_;
   statistics.node = bus_.name().substr(1);
-  if (!outputs_.empty()) statistics.topic = "/" + outputs_.front()->topic;
+  if (!outputs_.empty()) statistics.topic = bus_.resolve(outputs_.front()->topic);
   statistics.steps = all_steps_;
   statistics.mean_rate = static_cast<double>(all_steps_ - 1) / std::max(1e-9, secondsBetween(began_, now_));
   statistics.median_interval = intervals_.quantile(0.5);
@@ -100,6 +100,12 @@ void CycleDiagnostics::reportIntervals(const IntervalHistogram& intervals, Diagn
   status.add("intervals up to (s):count", text);
 }
 
+/// As the node's documents name it, or as it is remapped.
+std::string CycleDiagnostics::nameOf(const std::string& topic) const {
+  const std::string resolved = bus_.resolve(topic);
+  return resolved == "/" + topic ? topic : resolved;
+}
+
 void CycleDiagnostics::reportInputs(DiagnosticStatusWrapper& status) {
   status.summary(DiagnosticStatus::OK, "all inputs are fresh");
   const auto disconnected = [](const InputPort* input) { return input->disconnected; };
@@ -107,17 +113,18 @@ void CycleDiagnostics::reportInputs(DiagnosticStatusWrapper& status) {
     return status.summary(DiagnosticStatus::ERROR, "the ROS master is lost: no input counts");
   }
   for (const InputPort* input : inputs_) {
-    status.add("age of " + input->topic + " (s)", input->age(now_));
+    const std::string topic = nameOf(input->topic);
+    status.add("age of " + topic + " (s)", input->age(now_));
     const bool may_be_silent = input->optional || std::isinf(input->timeout);  // a command may never arrive
     if (input->received.isZero() && may_be_silent) continue;
     const std::string rivals = input->rivals(now_);
     if (!rivals.empty()) {
       status.mergeSummary(DiagnosticStatus::ERROR,
-                          input->topic + " is sent by two nodes, " + rivals + ": none counts until one has stopped");
+                          topic + " is sent by two nodes, " + rivals + ": none counts until one has stopped");
     } else if (!input->repeats.empty()) {
-      status.mergeSummary(DiagnosticStatus::ERROR, input->topic + " repeats " + input->repeats);
+      status.mergeSummary(DiagnosticStatus::ERROR, topic + " repeats " + input->repeats);
     } else if (!input->fresh(now_)) {
-      status.mergeSummary(DiagnosticStatus::WARN, input->topic + (input->valid() ? " is stale" : " has nothing valid"));
+      status.mergeSummary(DiagnosticStatus::WARN, topic + (input->valid() ? " is stale" : " has nothing valid"));
     }
   }
   bus_.refusals().report(status);

@@ -36,6 +36,7 @@ class CycleDiagnostics {
  private:
   void publishStatistics();
   void reportCycle(diagnostic_updater::DiagnosticStatusWrapper& status);
+  std::string nameOf(const std::string& topic) const;
   void reportInputs(diagnostic_updater::DiagnosticStatusWrapper& status);
   void reportOutputs(diagnostic_updater::DiagnosticStatusWrapper& status);
 

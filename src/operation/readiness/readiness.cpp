@@ -9,10 +9,12 @@ namespace {
 
 /// From the devices towards the hand.
 constexpr const char* kOrder[] = {"micromanipulator",
+                                  "holder_rig",
                                   "true_cell",
                                   "cell_simulator",
                                   "force_sensor",
                                   "injector",
+                                  "holder",
                                   "injection_controller",
                                   "link_emulator",
                                   "teleoperation_follower",

@@ -103,6 +103,55 @@ TEST_F(RigGuard, SeesTheTiltedPipette) {
   EXPECT_NEAR(guard.clearance(at(4e3, 0, 2e3)), edge - 0.5e-3, 1e-9);
 }
 
+/// With axes of its own the holding pipette is an obstacle where it is, and the needle one for it: the same two shapes,
+/// and so the same distances.
+TEST(TwoManipulators, AreObstaclesForEachOther) {
+  std::string xml = rigUrdf();
+  const std::string joint = R"(<joint name="world_to_holding_pipette" type="fixed">)";
+  const std::size_t place = xml.find(joint);
+  ASSERT_NE(place, std::string::npos);
+  std::string axes, parent = "world";
+  for (const char* axis : {"x", "y", "z"}) {
+    const std::string name = std::string("holding_") + axis, link = "holding_stage_" + std::string(axis);
+    axes += "<link name=\"" + link + "\"/><joint name=\"" + name + "\" type=\"prismatic\"><parent link=\"" + parent +
+            "\"/><child link=\"" + link + "\"/><axis xyz=\"" +
+            (*axis == 'x'   ? "1 0 0"
+             : *axis == 'y' ? "0 1 0"
+                            : "0 0 1") +
+            "\"/><limit lower=\"-0.01\" upper=\"0.01\" velocity=\"1e-3\" acceleration=\"0.1\" effort=\"1\"/></joint>";
+    parent = link;
+  }
+  const std::size_t world = xml.find("<parent link=\"world\"/>", place);
+  xml.replace(world, std::string("<parent link=\"world\"/>").size(), "<parent link=\"holding_stage_z\"/>");
+  xml.insert(place, axes);
+  const ManipulatorGeometry needle = ManipulatorGeometry::fromUrdf(xml);
+  const ManipulatorGeometry holder = ManipulatorGeometry::fromUrdf(xml, 0, "holding_pipette");
+  EXPECT_EQ(holder.tip_at_zero.translation(), Eigen::Vector3d(0, 0, -28e-6));
+  EXPECT_THROW(CollisionGuard(xml, needle, kMargin), ConfigError) << "of whom are its axes?";
+
+  CollisionGuard of_needle(xml, needle, kMargin, &holder);
+  CollisionGuard of_holder(xml, holder, kMargin, &needle, CollisionGuard::Role::kSolid);
+  const Eigen::Vector3d low(0, 0, -70e-6), here = Eigen::Vector3d::Zero();  // the tip at -10 um
+  EXPECT_NEAR(of_needle.clearance(low), 18e-6, 1e-10);
+  of_holder.placeOther(low);
+  EXPECT_NEAR(of_holder.clearance(here), 18e-6, 1e-10);
+  for (const double up : {5e-6, -20e-6}) {
+    of_needle.placeOther({0, 0, up});
+    EXPECT_NEAR(of_needle.clearance(low), 18e-6 - up, 1e-10);
+    EXPECT_NEAR(of_holder.clearance({0, 0, up}), 18e-6 - up, 1e-10);
+  }
+  of_needle.placeOther({0, 0, 17e-6});
+  EXPECT_NE(of_needle.blocks(low).find("needle_tip would come within 1e-06 m of holding_pipette"), std::string::npos)
+      << of_needle.blocks(low);
+  EXPECT_NE(of_holder.blocks({0, 0, 17e-6}).find("holding_pipette would come within 1e-06 m of needle_tip"),
+            std::string::npos)
+      << of_holder.blocks({0, 0, 17e-6});
+  EXPECT_EQ(of_holder.blocks({0, 0, 15.9e-6}), "");
+  EXPECT_EQ(of_holder.blocks({100e-6, 0, 0}), "") << "it comes through the dish, which is therefore no obstacle";
+  EXPECT_NE(of_holder.blocks({0, 0, -0.35e-3}).find("objective"), std::string::npos);
+  EXPECT_NE(of_holder.blocksPath({-100e-6, 0, 60e-6}, {100e-6, 0, 60e-6}), "") << "through the needle";
+}
+
 TEST_F(RigGuard, RefusesShapesThatItCannotKeepApart) {
   const auto with = [](const std::string& old_text, const std::string& new_text) {
     const std::string text = rigUrdf();

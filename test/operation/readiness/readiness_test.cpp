@@ -88,6 +88,28 @@ TEST_F(ReadinessTest, SilenceIsAReasonAndWhatWasSaidBeforeIsNone) {
   }
 }
 
+/// A controller that may inject into a cell which nobody holds is not ready.
+TEST(HeldCell, HolderAndItsManipulatorBelongToTheSession) {
+  Readiness readiness({"micromanipulator", "holder_rig", "injection_controller", "holder"}, Remedies::builtIn());
+  const auto hear = [&](double time) {
+    for (const char* node : {"micromanipulator", "injection_controller"}) readiness.hearLoop(node, "", time);
+    readiness.hearStatus("holder_rig", "commands", Level::kInformation, "holds", time);
+  };
+  hear(0);
+  readiness.hearStatus("holder", "pressure", Level::kInformation, "holds", 0);
+  EXPECT_TRUE(readiness.isReady(0));
+  hear(1);
+  readiness.hearStatus("holder", "pressure", Level::kError,
+                       "two nodes command the holder: /a and /b; the pressure is kept; allowed after enable", 1);
+  EXPECT_FALSE(readiness.isReady(1));
+  EXPECT_NE(readiness.hindrances(1).front().remedy.find("enable to /holder/state_command"), std::string::npos)
+      << readiness.hindrances(1).front().remedy;
+  hear(10);
+  ASSERT_EQ(readiness.hindrances(10).size(), 1U);
+  EXPECT_EQ(readiness.hindrances(10).front().reason, "the node holder is silent");
+  EXPECT_FALSE(readiness.isReady(10));
+}
+
 /// A loop that hangs beside a node that goes on, and a node that came back with other statuses.
 TEST_F(ReadinessTest, EachWordHoldsForItsOwnTime) {
   for (const char* node : {"micromanipulator", "injection_controller", "haptic_bridge"})

@@ -56,11 +56,30 @@ TEST(Remedies, OfThePageThatIsBuiltIn) {
   const Remedies& remedies = Remedies::builtIn();
   EXPECT_GT(remedies.patterns().size(), 200U);
   for (const char* reason :
-       {"no valid needle position", "the operator is not present", "clutch is pressed", "no injection is under way",
-        "Zaber: connected, no reply yet", "the tip is deeper than the cell was prepared for: withdraw it",
-        "/needle/measured_cp is stale", "state is PAUSED, enable is allowed in DISABLED, ENABLED, FAULT",
-        "two nodes command the needle: a and b; allowed after enable", "needle held: DISABLED", "needle held: PAUSED",
-        "the node vision has not started yet", "/focus/measured_js is silent"}) {
+       {"no valid needle position",
+        "the operator is not present",
+        "clutch is pressed",
+        "no injection is under way",
+        "Zaber: connected, no reply yet",
+        "the tip is deeper than the cell was prepared for: withdraw it",
+        "/needle/measured_cp is stale",
+        "state is PAUSED, enable is allowed in DISABLED, ENABLED, FAULT",
+        "two nodes command the needle: a and b; allowed after enable",
+        "needle held: DISABLED",
+        "needle held: PAUSED",
+        "the node vision has not started yet",
+        "two nodes command the holder: /a and /b; the pressure is kept; allowed after enable",
+        "the pressure is kept: its commander /a is silent",
+        "the holder is DISABLED: its pressure is kept",
+        "set_pressure refused: it is stale",
+        "set_pressure refused: pressure = nan Pa, allowed [-20000, 20000] Pa",
+        "set_pressure refused: state is FAULT",
+        "draw_limit is reached: nothing more is drawn in",
+        "the holder's pressure is not known: its device was not told one yet",
+        "set_balance refused: draw_limit = 2e-15 m^3 is reached; push out what was drawn in first, or reset",
+        "two nodes command the holding pipette: /a and /b; allowed after enable",
+        "the place of the other manipulator is not known: it is an obstacle where it was last",
+        "/focus/measured_js is silent"}) {
     const auto found = remedies.of(reason);
     ASSERT_TRUE(found) << reason;
     EXPECT_FALSE(found->text.empty()) << reason;
