@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kStep = 0.05;       ///< of the suction, over the modulus
 constexpr double kStrongest = 1;     ///< same
+constexpr double kAway = 0.4;        ///< radius of a tip that does not touch: of the length of the path's steps
 constexpr double kTolerance = 0.01;  ///< of the tongue's length, relative
 
 }  // namespace
@@ -51,6 +52,8 @@ Scene boreMouth(const Scene& scene) {
   Scene mouth = scene;
   mouth.cell.layers = {scene.cell.layers.back()};
   mouth.cell.layers.front().surface_tension = 0;
+  mouth.needle = {};
+  mouth.needle.tip = {"hemisphere", kAway * mouth.radius(), 0};
   mouth.holding_pipette.mouth = Scene::Mouth{bore, scene.needle.tip.radius, wall / 2, 0, {"sliding", 0, 0, 0}};
   return mouth;
 }
