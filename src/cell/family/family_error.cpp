@@ -89,7 +89,7 @@ std::vector<std::vector<double>> LeaveOneOut::errors(const Eigen::MatrixXd& weig
   return result;
 }
 
-Covariance chooseCovariance(const Eigen::MatrixXd& points, const LeaveOneOut& errors) {
+Covariance chooseCovariance(const Eigen::MatrixXd& points, const PredictionErrors& errors) {
   const Eigen::Index dimension = points.rows();
   Covariance best{Eigen::VectorXd::Constant(dimension, kDefaultLength), kNoises[0]};
   if (points.cols() < 4 * dimension) return best;
@@ -100,7 +100,7 @@ Covariance chooseCovariance(const Eigen::MatrixXd& points, const LeaveOneOut& er
     for (int i = 0; i < combinations; ++i) {
       Covariance trial{Eigen::VectorXd(dimension), noise};
       for (Eigen::Index k = 0, rest = i; k < dimension; ++k, rest /= kCount) trial.lengths[k] = kLengths[rest % kCount];
-      const double bad = badness(errors.errors(Kriging(points, trial.lengths, noise).leaveOneOut()));
+      const double bad = badness(errors(Kriging(points, trial.lengths, noise).leaveOneOut()));
       if (bad >= least) continue;
       least = bad;
       best = trial;

@@ -23,4 +23,37 @@ const std::vector<Ratio>& ratios() {
   return all;
 }
 
+const std::vector<Ratio>& mouthRatios() {
+  using Mouth = Scene::Mouth;
+  static const std::vector<Ratio> all = [] {
+    std::vector<Ratio> result = {
+        {"bore_radius", true, 1, [](const Scene& scene) { return scene.holding_pipette.mouth->inner_radius; },
+         [](Scene& scene, double value) { scene.holding_pipette.mouth->inner_radius = rounded(value); }},
+        {"lip_edge", true, 1,
+         [](const Scene& scene) {
+           const Mouth& mouth = *scene.holding_pipette.mouth;
+           return mouth.edge_radius / mouth.inner_radius;
+         },
+         [](Scene& scene, double value) {
+           Mouth& mouth = *scene.holding_pipette.mouth;
+           mouth.edge_radius = rounded(value * mouth.inner_radius);
+         }},
+        {"wall", true, 1,
+         [](const Scene& scene) {
+           const Mouth& mouth = *scene.holding_pipette.mouth;
+           return (mouth.outer_radius - mouth.inner_radius) / (2 * mouth.edge_radius);
+         },
+         [](Scene& scene, double value) {
+           Mouth& mouth = *scene.holding_pipette.mouth;
+           mouth.outer_radius = rounded(mouth.inner_radius + 2 * value * mouth.edge_radius);
+         }}};
+    for (const Ratio& ratio : ratios()) {
+      const std::string name = ratio.name;
+      if (name == "poisson_ratio" || name == "shell_thickness" || name == "core_modulus") result.push_back(ratio);
+    }
+    return result;
+  }();
+  return all;
+}
+
 }  // namespace microinjection

@@ -1,0 +1,108 @@
+#include "cell/family/tongue_member.h"
+
+#include <boost/math/interpolators/barycentric_rational.hpp>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "cell/model/cell_problem.h"
+#include "cell/model/scene_mesh.h"
+#include "cell/surrogate/axis_ray.h"
+
+namespace microinjection {
+namespace {
+
+constexpr double kMeshLevel = 1;
+constexpr double kFirstRoot = 0.02, kRootStep = 0.0125, kStepGrowth = 1.06;  ///< of the suctions that are solved
+constexpr int kEvenSteps = 16, kMostSteps = 60, kFewestEquilibria = 12;
+constexpr double kSameSuction = 1e-3;  ///< relative: an end so near to the last equilibrium is that
+
+/// Roots of the suctions, and what belongs to them: a column each.
+struct SolvedTongues {
+  std::vector<double> roots;
+  std::vector<Eigen::VectorXd> columns;
+};
+
+class TonguePath {
+ public:
+  explicit TonguePath(const Scene& scene)
+      : touch_(touchOf(scene)),
+        places_(M_PI - tonguePlaces(std::asin(touch_.radius)).array()),
+        problem_(scene, makeSceneMesh<2>(scene, kMeshLevel), ElementKind::kP2P1) {
+    if (!problem_.hold(0).converged) throw std::runtime_error("the cell does not rest in the mouth");
+    rest_ = problem_.held();
+  }
+
+  /// Until there is no equilibrium any more; `reason` says why.
+  SolvedTongues follow(std::string& reason) {
+    SolvedTongues solved;
+    double root = kFirstRoot, step = kRootStep;
+    for (int i = 0; i < kMostSteps; ++i, root += step) {
+      const LoadPath::Result result = problem_.hold(-root * root);
+      if (!result.converged) reason = result.reason;
+      const double reached = std::sqrt(-problem_.held().pressure);
+      const bool new_one = solved.roots.empty() || reached > (1 + kSameSuction) * solved.roots.back();
+      if (new_one) add(reached, solved);
+      if (!result.converged) return solved;
+      if (i >= kEvenSteps) step *= kStepGrowth;
+    }
+    return solved;
+  }
+
+ private:
+  void add(double root, SolvedTongues& solved) const {
+    const HeldCell held = problem_.held();
+    const double a = touch_.bore_radius, s = root * root, length = held.tongue_length - rest_.tongue_length,
+                 volume = held.tongue_volume - rest_.tongue_volume;
+    if (!(length > 0 && volume > 0)) throw std::runtime_error("the tongue does not grow with the suction");
+    const SectionOutline outline = sectionOutline(problem_);
+    Eigen::VectorXd column(3 + 2 * places_.size());
+    column.head<3>() << std::log(length / (a * s)), std::log(volume / (a * a * a * s)),
+        held.seal_radius / touch_.radius;
+    for (Eigen::Index i = 0; i < places_.size(); ++i)
+      column.segment<2>(3 + 2 * i) = displacementAt(outline, places_[i]) / a;
+    solved.roots.push_back(root);
+    solved.columns.push_back(column);
+  }
+
+  TongueTouch touch_;
+  Eigen::VectorXd places_;  ///< rad, from the upper pole
+  CellProblem<2> problem_;
+  HeldCell rest_;
+};
+
+}  // namespace
+
+TongueTouch touchOf(const Scene& scene) {
+  const Scene::Mouth& mouth = *scene.holding_pipette.mouth;
+  return {mouth.inner_radius / scene.radius(), mouth.edge_radius / scene.radius()};
+}
+
+TongueMember solveTongue(const TongueFamily& family, const Eigen::VectorXd& coordinates) {
+  TonguePath path(family.member(coordinates));
+  std::string reason;
+  const SolvedTongues solved = path.follow(reason);
+  const std::size_t count = solved.roots.size();
+  if (count < kFewestEquilibria) throw std::runtime_error("the tongue's equilibria end early: " + reason);
+  TongueMember member;
+  member.coordinates = coordinates;
+  TongueCurves& curves = member.curves;
+  const double end = solved.roots.back();
+  curves.log_end = 2 * std::log(end);
+  curves.ends = reason.find("no stable equilibrium") != std::string::npos;
+  const Eigen::VectorXd roots = std::sqrt(kServedSuction) * end * tongueFractions().cwiseSqrt();
+  const Eigen::Index values = solved.columns.front().size();
+  Eigen::MatrixXd at(roots.size(), values);
+  std::vector<double> row(count);
+  for (Eigen::Index k = 0; k < values; ++k) {
+    for (std::size_t i = 0; i < count; ++i) row[i] = solved.columns[i][k];
+    const boost::math::barycentric_rational<double> curve(solved.roots.data(), row.data(), count);
+    for (Eigen::Index i = 0; i < roots.size(); ++i) at(i, k) = curve(roots[i]);
+  }
+  curves.values = at.leftCols(3);
+  curves.surface = at.rightCols(values - 3);
+  return member;
+}
+
+}  // namespace microinjection
