@@ -17,7 +17,7 @@
 #include "base/worker_processes.h"
 #include "cell/choice/model_choice.h"
 #include "cell/family/family_cell.h"
-#include "cell/family/tongue_family.h"
+#include "cell/family/mouth_family.h"
 #include "cell/model/scene.h"
 #include "cell/model/similarity.h"
 #include "cell/surrogate/surrogate_data.h"
@@ -25,7 +25,7 @@
 #include "commands/path_store.h"
 #include "commands/prepare_arguments.h"
 #include "commands/prepare_family.h"
-#include "commands/prepare_tongues.h"
+#include "commands/prepare_mouth_family.h"
 #include "commands/run_tasks.h"
 #include "commands/worker.h"
 
@@ -163,7 +163,7 @@ int work(const PrepareArguments& arguments) {
     }
     if (arguments.member >= 0) return solveCheckPath(arguments.family, arguments.member, arguments.ray);
     if (arguments.ray >= 0) return solveFamilyPath(arguments.family.file, arguments.at, arguments.ray);
-    solveTongueTask(arguments.family.file, arguments.at);
+    solveMouthMember(arguments.family.file, arguments.at);
     return kDone;
   } catch (const std::exception&) {
     std::fputc('\n', stderr);  // ends the progress line of the preparation
@@ -188,7 +188,7 @@ bool isServed(const PrepareArguments& arguments) {
 
 int prepare(const PrepareArguments& arguments) {
   if (arguments.family.file.empty()) return isServed(arguments) ? kDone : Preparing(arguments).run();
-  if (TongueFamily::isOne(arguments.family.file)) return prepareTongues(arguments.family), kDone;
+  if (MouthFamily::kindOf(arguments.family.file)) return prepareMouthFamily(arguments.family), kDone;
   arguments.family.check > 0 ? checkFamily(arguments.family) : prepareFamily(arguments.family);
   return kDone;
 }

@@ -53,8 +53,8 @@ struct Covariance {
 /// Relative errors of each member that is predicted with these weights (rows) from the others.
 using PredictionErrors = std::function<std::vector<std::vector<double>>(const Eigen::MatrixXd& weights)>;
 
-/// Chosen among a grid by the errors of leaving members out; lengths of 2 for fewer than four times as many
-/// members as coordinates.
+/// Chosen among a grid by the errors of leaving members out, with more than three coordinates by descent on it; lengths
+/// of 2 for fewer than four times as many members as coordinates.
 Covariance chooseCovariance(const Eigen::MatrixXd& points, const PredictionErrors& errors);
 
 }  // namespace microinjection

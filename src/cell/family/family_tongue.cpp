@@ -11,7 +11,8 @@ namespace {
 
 constexpr int kNodes = TongueCurves::kNodes;
 constexpr double kLowestRoot = 0.06;   ///< of the strongest suction, at which a curve begins; a polynomial from there
-constexpr double kMeshOfRise = 0.002;  ///< relative, of the rise: `tongues` are solved on level 1 (scene_mesh.h)
+constexpr double kMeshOfRise = 0.003;  ///< relative, of the rise: of the members' meshes
+constexpr double kContactOfLength = 0.002;  ///< relative, of the length: of the lip's stiffness
 
 /// Coordinate of the polynomials, -1 at the lowest root and 1 at the strongest suction.
 double toUnit(double root) { return (2 * root - 1 - kLowestRoot) / (1 - kLowestRoot); }
@@ -76,15 +77,18 @@ TongueTouch::TongueTouch(double bore, double edge_radius) : bore_radius(bore) {
   volume = 2 * M_PI / 3 * (1 - std::pow(1 - radius * radius, 1.5)) - M_PI * radius * radius * plane;
 }
 
-FamilyTongue::FamilyTongue(const TongueTouch& touch, const TongueCurves& curves, double error, double end_error)
+FamilyTongue::FamilyTongue(const TongueTouch& touch, const Eigen::MatrixXd& curves, double error, double end_error)
     : touch_(touch),
-      coefficients_(coefficientsOf(curves.values)),
-      surface_(coefficientsOf(curves.surface)),
+      surface_(coefficientsOf(curves.rightCols(2 * TongueCurves::kPlaces))),
       error_(std::hypot(error, kMeshOfRise)),
       end_error_(end_error),
-      end_(std::exp(curves.log_end)),
+      end_(std::exp(curves(0, TongueCurves::kLogEnd))),
       strongest_(kServedSuction * end_),
-      ends_(curves.ends) {}
+      ends_(curves(0, TongueCurves::kEnds) > 0.5) {
+  int column = 0;
+  for (const int of : {TongueCurves::kLogLength, TongueCurves::kLogVolume, TongueCurves::kSeal})
+    coefficients_.col(column++) = coefficientsOf(curves.col(of));
+}
 
 void FamilyTongue::basis(double suction, Basis& value, Basis& slope) const {
   chebyshev(toUnit(std::sqrt(suction / strongest_)), value, slope);
@@ -104,7 +108,7 @@ DrawnTongue FamilyTongue::at(double suction) const {
   result.volume_slope = volume * (1 + by_suction * rise[1]);
   result.seal_radius = touch_.radius * at[2];
   result.clamping_force = suction * M_PI * result.seal_radius * result.seal_radius;
-  result.expected_error = error_ * length * suction / result.length;
+  result.expected_error = std::hypot(error_ * length * suction / result.length, kContactOfLength);
   return result;
 }
 

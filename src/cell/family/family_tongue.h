@@ -17,20 +17,23 @@ struct DrawnTongue {
   double expected_error = std::numeric_limits<double>::quiet_NaN();  ///< relative, of the length; one of ten has more
 };
 
-/// Values at the suctions at which the members of a tongue family are known, a row each: the fractions
-/// kTongueFractions() of the strongest suction.
+/// Columns of a tongue's curves, at the fractions tongueFractions() of the strongest suction (rows).
 struct TongueCurves {
   static constexpr int kNodes = 12;
   static constexpr int kPlaces = 30;  ///< of the surface
-
-  double log_end = 0;       ///< logarithm of the suction at which the equilibria end
-  bool ends = true;         ///< they end there; else the solution does
-  Eigen::MatrixXd values;   ///< kNodes x 3: log of the rises of length / (a s) and volume / (a^3 s); seal over touch
-  Eigen::MatrixXd surface;  ///< kNodes x 2 kPlaces: displacement (r, z) over a of tonguePlaces()
+  enum Column {
+    kLogLength,  ///< log of the length's rise above the touch, over a s
+    kLogEnd,     ///< log of the suction at which the equilibria end, in each row
+    kLogVolume,  ///< log of the volume's rise above the touch, over a^3 s
+    kSeal,       ///< its radius over that of the touch
+    kEnds,       ///< 1: the equilibria end there; 0: the solution does
+    kSurface,    ///< displacements (r, z) of tonguePlaces() over a
+    kColumns = kSurface + 2 * kPlaces
+  };
 };
 
-/// Suctions over the strongest one, ascending, at which TongueCurves are known: Chebyshev points of the root, because
-/// the contact closes as s log s at no suction.
+/// Suctions over the strongest one, ascending, at which a tongue's curves are known: Chebyshev points of the root,
+/// because the contact closes as s log s at no suction.
 Eigen::VectorXd tongueFractions();
 
 /// Angles (rad) from the lower pole, where the mouth is, of the surface's places at rest: half of them within the
@@ -46,7 +49,7 @@ struct TongueTouch {
   double bore_radius, radius, length, volume;  ///< of the bore and of the touch; of the cell behind the plane
 };
 
-/// A cell's tongue as a function of the suction, made by TongueFamilyData.
+/// A cell's tongue as a function of the suction, made by TongueFamily.
 ///
 ///     L(s) = L0 + a s exp(g(sqrt(s)))     L0: of the touch, exact; g: a polynomial, nearly constant
 ///
@@ -56,8 +59,9 @@ struct TongueTouch {
 /// at() takes well below a microsecond and allocates nothing; several threads may use it at once.
 class FamilyTongue {
  public:
-  /// @param error of g, to be expected; `end_error`: same, of log_end
-  FamilyTongue(const TongueTouch& touch, const TongueCurves& curves, double error, double end_error);
+  /// @param curves see TongueCurves
+  /// @param error of g, to be expected; `end_error`: same, of the end
+  FamilyTongue(const TongueTouch& touch, const Eigen::MatrixXd& curves, double error, double end_error);
 
   /// Suction over modulus to which the tongue is known: kServedSuction of end().
   double strongest() const { return strongest_; }
@@ -80,8 +84,8 @@ class FamilyTongue {
   void basis(double suction, Basis& value, Basis& slope) const;
 
   TongueTouch touch_;
-  Eigen::Matrix<double, TongueCurves::kNodes, 3> coefficients_;
-  Eigen::MatrixXd surface_;  ///< coefficients
+  Eigen::Matrix<double, TongueCurves::kNodes, 3> coefficients_;  ///< of length, volume and seal
+  Eigen::MatrixXd surface_;                                      ///< coefficients
   double error_, end_error_, end_, strongest_;
   bool ends_;
 };

@@ -1,5 +1,8 @@
 #include "cell/family/ratio.h"
 
+#include <cmath>
+#include <string>
+
 #include "cell/model/similarity.h"
 
 namespace microinjection {
@@ -46,10 +49,12 @@ const std::vector<Ratio>& mouthRatios() {
          [](Scene& scene, double value) {
            Mouth& mouth = *scene.holding_pipette.mouth;
            mouth.outer_radius = rounded(mouth.inner_radius + 2 * value * mouth.edge_radius);
-         }}};
+         }},
+        {"suction_root", false, 1, [](const Scene& scene) { return std::sqrt(-scene.holding_pipette.mouth->pressure); },
+         [](Scene& scene, double value) { scene.holding_pipette.mouth->pressure = rounded(-value * value); }}};
     for (const Ratio& ratio : ratios()) {
       const std::string name = ratio.name;
-      if (name == "poisson_ratio" || name == "shell_thickness" || name == "core_modulus") result.push_back(ratio);
+      if (name != "holding_radius" && name != "surface_tension") result.push_back(ratio);
     }
     return result;
   }();

@@ -1,119 +1,47 @@
 #include "cell/family/tongue_family.h"
 
-#include <algorithm>
-#include <cmath>
-#include <sstream>
+#include <stdexcept>
+#include <utility>
 
-#include "base/config_reader.h"
 #include "base/errors.h"
-#include "cell/model/plausible_scene.h"
-#include "cell/model/scene_description.h"
-#include "cell/model/similarity.h"
-#include "cell/surrogate/surrogate_plan.h"
+#include "cell/family/family_file.h"
+#include "cell/family/tongue_member.h"
 
 namespace microinjection {
-namespace {
 
-constexpr double kRoundingOfRatio = 1e-9;
-
-bool isWall(const Family::Parameter& parameter) { return parameter.ratio->name == std::string("wall"); }
-
-bool hasOnePoissonRatio(const Scene& scene) {
-  return std::all_of(scene.cell.layers.begin(), scene.cell.layers.end(), [&](const Scene::Layer& layer) {
-    return layer.material.poisson_ratio == scene.cell.material().poisson_ratio;
-  });
-}
-
-}  // namespace
-
-bool TongueFamily::isOne(const std::string& path) { return ConfigReader::ofFile(path).has("tongue"); }
-
-TongueFamily TongueFamily::load(const std::string& path) {
-  TongueFamily family;
-  ConfigReader reader = ConfigReader::ofFile(path);
-  reader.text("tongue", family.name_, ConfigReader::kRequired);
-  const YAML::Node scene = reader.any("scene");  // has a reader of its own
-  if (!scene) reader.error("scene", "is missing");
-  if (scene) family.scene_ = withoutDimension(parseDimensionlessScene(scene, path + ": scene"));
-  const int layers = static_cast<int>(family.scene_.cell.layers.size());
-  family.parameters_ = readFamilyParameters(reader, "parameters", layers, mouthRatios());
-  family.constants_ = readFamilyParameters(reader, "constants", layers, mouthRatios());
-  if (family.parameters_.empty()) reader.error("parameters", "must name at least one ratio");
-  if (scene && !family.scene_.holding_pipette.mouth) reader.error("scene/holding_pipette/mouth", "is missing");
-  for (const char* name : {"bore_radius", "lip_edge", "wall"}) {
-    const auto isNamed = [&](const Family::Parameter& each) { return each.ratio->name == std::string(name); };
-    const auto& all = family.parameters_;
-    const auto& fixed = family.constants_;
-    if (std::none_of(all.begin(), all.end(), isNamed) && std::none_of(fixed.begin(), fixed.end(), isNamed))
-      reader.error("parameters", std::string("must name ") + name + ", here or in constants");
+TongueFamily::TongueFamily(MouthFamilyData data) : data_(std::move(data)) {
+  if (data_.family().kind() != MouthFamily::Kind::kTongue)
+    throw std::invalid_argument("family " + data_.family().name() + " has no tongues");
+  for (const MouthMember& member : data_.members()) {
+    if (member.curves.rows() != TongueCurves::kNodes || member.curves.cols() != TongueCurves::kColumns)
+      throw ConfigError("family " + data_.family().name() + ": its data have other curves than tongues");
   }
-  reader.finish();
-  return family;
 }
 
-Scene TongueFamily::member(const Eigen::VectorXd& coordinates) const {
-  Scene scene = scene_;
-  for (int i = 0; i < dimension(); ++i) parameters_[i].ratio->set(scene, parameters_[i].value(coordinates[i]));
-  scene.holding_pipette.contact_radius = scene.holding_pipette.mouth->inner_radius;
-  return scene;
+TongueFamily TongueFamily::load(const std::string& family_file) {
+  if (MouthFamily::kindOf(family_file) != MouthFamily::Kind::kTongue)
+    throw ConfigError(family_file + ": is no family of tongues: its key `tongue` is missing");
+  return TongueFamily(MouthFamilyData::loadBoth(family_file));
 }
 
-std::optional<Eigen::VectorXd> TongueFamily::coordinatesOf(const Scene& scene, std::string* misfit) const {
-  Eigen::VectorXd coordinates(dimension());
-  const std::string text = misfitOf(scene, coordinates);
-  if (misfit) *misfit = text;
-  return text.empty() ? std::optional(coordinates) : std::nullopt;
+FamilyTongue TongueFamily::tongue(const Eigen::VectorXd& coordinates) const {
+  const MouthFamilyData::Prediction found = data_.predict(coordinates);
+  return {touchOf(data_.family().member(coordinates)), found.curves, found.error[0], found.error[1]};
 }
 
-std::string TongueFamily::misfitOf(const Scene& scene, Eigen::VectorXd& coordinates) const {
-  if (scene.cell.tensegrity) return "the cell is a tensegrity";
-  if (!scene.holding_pipette.mouth) return "holding_pipette has no mouth";
-  if (scene.cell.layers.size() != scene_.cell.layers.size())
-    return "layers: " + std::to_string(scene.cell.layers.size()) + ", not " + std::to_string(scene_.cell.layers.size());
-  if (!hasOnePoissonRatio(scene)) return "poisson_ratio is not the same in all layers";
-  Scene other = withoutDimension(SurrogatePlan::elastic(scene)), own = scene_;
-  for (int i = 0; i < dimension(); ++i) {
-    const Family::Parameter& each = parameters_[i];
-    const double value = each.ratio->get(other);
-    coordinates[i] = each.coordinate(isWall(each) ? std::min(value, each.high) : value);
-  }
-  for (const Family::Parameter& constant : constants_) {
-    const double value = constant.ratio->get(other);
-    if (value < constant.low || (value > constant.high && !isWall(constant))) return constant.text(value);
-  }
-  // What is left has to be the same.
-  other.needle = own.needle;
-  other.holding_pipette.contact_radius = own.holding_pipette.contact_radius;
-  other.holding_pipette.mouth->pressure = own.holding_pipette.mouth->pressure;
-  for (const std::vector<Family::Parameter>& group : {parameters_, constants_}) {
-    for (const Family::Parameter& each : group) {
-      const double value = each.ratio->get(scene_);
-      each.ratio->set(other, value);
-      each.ratio->set(own, value);
+FamilyTongue TongueFamily::tongue(const Scene& scene) const { return tongue(data_.coordinatesOf(scene)); }
+
+std::optional<FamilyTongue> findFamilyTongue(const std::string& families, const Scene& scene, std::string& reason) {
+  reason.clear();
+  for (const std::string& file : familyFiles(families + "/tongues")) {
+    try {
+      return TongueFamily::load(file).tongue(scene);
+    } catch (const ConfigError& error) {
+      reason += (reason.empty() ? "" : "; ") + std::string(error.what());
     }
   }
-  if (describeCellAndTip(other) == describeCellAndTip(own)) return "";
-  return "material, tension, or the lip's contact is of another kind than the family's";
-}
-
-std::string TongueFamily::refusal(const Eigen::VectorXd& coordinates) const {
-  std::ostringstream out;
-  for (int i = 0; i < dimension(); ++i) {
-    if (std::abs(coordinates[i]) <= 1 + kRoundingOfRatio) continue;
-    const Family::Parameter& each = parameters_[i];
-    out << (out.str().empty() ? "" : "; ") << each.ratio->name << " = " << each.value(coordinates[i])
-        << ": must be from " << each.low << " to " << each.high;
-  }
-  return out.str();
-}
-
-std::string TongueFamily::description() const {
-  std::ostringstream out;
-  out << std::hexfloat << "tongue family " << name_ << " of ";
-  for (const Family::Parameter& parameter : parameters_)
-    out << parameter.ratio->name << ' ' << parameter.low << ' ' << parameter.high << ' ';
-  out << describeCellAndTip(member(Eigen::VectorXd::Zero(dimension())));
-  return out.str();
+  if (reason.empty()) reason = families + "/tongues has no family";
+  return std::nullopt;
 }
 
 }  // namespace microinjection

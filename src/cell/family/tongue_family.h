@@ -1,52 +1,37 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <optional>
 #include <string>
-#include <vector>
 
-#include "cell/family/family.h"
-#include "cell/model/scene.h"
+#include "cell/family/family_tongue.h"
+#include "cell/family/mouth_family_data.h"
 
 namespace microinjection {
 
-/// Cells in the mouth of a pipette that differ in a few ratios only (config/families/tongues/*.yaml), without
-/// dimension: radius 1, modulus of the outermost layer 1. The needle does not touch the cell, so that the tongue, the
-/// seal and the surface depend on the ratios and on the suction alone:
+/// Tongues of all cells of a family at any suction, made from solved ones (tongue_member.h):
 ///
-///     length / R = f(suction / E; bore_radius, lip_edge, wall, ...)
+///     ratios --> coordinates --> MouthFamilyData: a weight for each member --> FamilyTongue, at(suction / E)
 ///
-/// Beside Family rather than a kind of it, because nothing of a needle (paths, range, contact point) has a meaning
-/// here. The suction is no coordinate: each member has a whole curve (TongueMember).
 class TongueFamily {
  public:
-  /// Throws ConfigError that names file, key, value and what is allowed.
-  static TongueFamily load(const std::string& path);
-  /// Whether a file is that of a tongue family, by its key `tongue`.
-  static bool isOne(const std::string& path);
+  /// @throws std::invalid_argument for data of another kind
+  explicit TongueFamily(MouthFamilyData data);
+  /// Of a family file with its data beside it. @throws ConfigError where one of them cannot be used
+  static TongueFamily load(const std::string& family_file);
 
-  const std::string& name() const { return name_; }
-  const std::vector<Family::Parameter>& parameters() const { return parameters_; }  ///< of mouthRatios()
-  int dimension() const { return static_cast<int>(parameters_.size()); }
+  const MouthFamilyData& data() const { return data_; }
 
-  /// The member at these coordinates, without dimension.
-  Scene member(const Eigen::VectorXd& coordinates) const;
-  /// Coordinates of a scene with a mouth; outside of [-1, 1] beyond the borders. A thicker wall than the highest is as
-  /// that, because the cell does not touch its outside any more. Nothing when the scene differs in something else;
-  /// `misfit` then says in what, for the user. Needle, pressure and viscoelasticity are not compared.
-  std::optional<Eigen::VectorXd> coordinatesOf(const Scene& scene, std::string* misfit = nullptr) const;
-  /// Which ratio is outside of its borders, its value and what is allowed; empty: none is.
-  std::string refusal(const Eigen::VectorXd& coordinates) const;
-
-  /// One line with everything that the data of the family depend on.
-  std::string description() const;
+  /// Takes some ten microseconds. @throws ConfigError as MouthFamilyData::predict()
+  FamilyTongue tongue(const Eigen::VectorXd& coordinates) const;
+  /// Of a scene in SI units. @throws ConfigError also for a scene of another form
+  FamilyTongue tongue(const Scene& scene) const;
 
  private:
-  std::string misfitOf(const Scene& scene, Eigen::VectorXd& coordinates) const;
-
-  std::string name_;
-  Scene scene_;
-  std::vector<Family::Parameter> parameters_, constants_;
+  MouthFamilyData data_;
 };
+
+/// The tongue of a scene's cell by the first family in the folder `tongues` of a folder of families that has it;
+/// nothing when none has: `reason` is one line for the user.
+std::optional<FamilyTongue> findFamilyTongue(const std::string& families, const Scene& scene, std::string& reason);
 
 }  // namespace microinjection

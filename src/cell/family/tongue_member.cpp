@@ -1,5 +1,6 @@
 #include "cell/family/tongue_member.h"
 
+#include <algorithm>
 #include <boost/math/interpolators/barycentric_rational.hpp>
 #include <cmath>
 #include <stdexcept>
@@ -13,10 +14,17 @@
 namespace microinjection {
 namespace {
 
-constexpr double kMeshLevel = 1;
+constexpr double kFineEdge = 0.2;  ///< of a lip over the bore: sharper ones have finer meshes
 constexpr double kFirstRoot = 0.02, kRootStep = 0.0125, kStepGrowth = 1.06;  ///< of the suctions that are solved
 constexpr int kEvenSteps = 16, kMostSteps = 60, kFewestEquilibria = 12;
 constexpr double kSameSuction = 1e-3;  ///< relative: an end so near to the last equilibrium is that
+
+/// Level of scene_mesh.h at which the elements at the lip are a twentieth of the bore's radius or less: a
+/// sharp lip ends the path of a coarser mesh early.
+double meshLevel(const Scene& scene) {
+  const Scene::Mouth& mouth = *scene.holding_pipette.mouth;
+  return std::max(0.0, std::log2(kFineEdge * mouth.inner_radius / mouth.edge_radius));
+}
 
 /// Roots of the suctions, and what belongs to them: a column each.
 struct SolvedTongues {
@@ -29,7 +37,7 @@ class TonguePath {
   explicit TonguePath(const Scene& scene)
       : touch_(touchOf(scene)),
         places_(M_PI - tonguePlaces(std::asin(touch_.radius)).array()),
-        problem_(scene, makeSceneMesh<2>(scene, kMeshLevel), ElementKind::kP2P1) {
+        problem_(scene, makeSceneMesh<2>(scene, meshLevel(scene)), ElementKind::kP2P1) {
     if (!problem_.hold(0).converged) throw std::runtime_error("the cell does not rest in the mouth");
     rest_ = problem_.held();
   }
@@ -57,11 +65,12 @@ class TonguePath {
                  volume = held.tongue_volume - rest_.tongue_volume;
     if (!(length > 0 && volume > 0)) throw std::runtime_error("the tongue does not grow with the suction");
     const SectionOutline outline = sectionOutline(problem_);
-    Eigen::VectorXd column(3 + 2 * places_.size());
-    column.head<3>() << std::log(length / (a * s)), std::log(volume / (a * a * a * s)),
-        held.seal_radius / touch_.radius;
+    Eigen::VectorXd column = Eigen::VectorXd::Zero(TongueCurves::kColumns);
+    column[TongueCurves::kLogLength] = std::log(length / (a * s));
+    column[TongueCurves::kLogVolume] = std::log(volume / (a * a * a * s));
+    column[TongueCurves::kSeal] = held.seal_radius / touch_.radius;
     for (Eigen::Index i = 0; i < places_.size(); ++i)
-      column.segment<2>(3 + 2 * i) = displacementAt(outline, places_[i]) / a;
+      column.segment<2>(TongueCurves::kSurface + 2 * i) = displacementAt(outline, places_[i]) / a;
     solved.roots.push_back(root);
     solved.columns.push_back(column);
   }
@@ -79,29 +88,24 @@ TongueTouch touchOf(const Scene& scene) {
   return {mouth.inner_radius / scene.radius(), mouth.edge_radius / scene.radius()};
 }
 
-TongueMember solveTongue(const TongueFamily& family, const Eigen::VectorXd& coordinates) {
+MouthMember solveTongue(const MouthFamily& family, const Eigen::VectorXd& coordinates) {
   TonguePath path(family.member(coordinates));
   std::string reason;
   const SolvedTongues solved = path.follow(reason);
   const std::size_t count = solved.roots.size();
   if (count < kFewestEquilibria) throw std::runtime_error("the tongue's equilibria end early: " + reason);
-  TongueMember member;
-  member.coordinates = coordinates;
-  TongueCurves& curves = member.curves;
   const double end = solved.roots.back();
-  curves.log_end = 2 * std::log(end);
-  curves.ends = reason.find("no stable equilibrium") != std::string::npos;
   const Eigen::VectorXd roots = std::sqrt(kServedSuction) * end * tongueFractions().cwiseSqrt();
-  const Eigen::Index values = solved.columns.front().size();
-  Eigen::MatrixXd at(roots.size(), values);
+  MouthMember member{coordinates, Eigen::MatrixXd(roots.size(), TongueCurves::kColumns)};
   std::vector<double> row(count);
-  for (Eigen::Index k = 0; k < values; ++k) {
+  for (Eigen::Index k = 0; k < TongueCurves::kColumns; ++k) {
     for (std::size_t i = 0; i < count; ++i) row[i] = solved.columns[i][k];
     const boost::math::barycentric_rational<double> curve(solved.roots.data(), row.data(), count);
-    for (Eigen::Index i = 0; i < roots.size(); ++i) at(i, k) = curve(roots[i]);
+    for (Eigen::Index i = 0; i < roots.size(); ++i) member.curves(i, k) = curve(roots[i]);
   }
-  curves.values = at.leftCols(3);
-  curves.surface = at.rightCols(values - 3);
+  member.curves.col(TongueCurves::kLogEnd).setConstant(2 * std::log(end));
+  // Of the path's reasons, those of a solution that gives up have no such word.
+  member.curves.col(TongueCurves::kEnds).setConstant(reason.find("stable") != std::string::npos ? 1 : 0);
   return member;
 }
 
