@@ -110,7 +110,7 @@ void tellOfSuction(const Scene& wanted, const std::string& families, ServingPlan
   } else {
     plan.glued_error = held ? held->largestChange() : kGluedError;
     note << "its force is up to " << 100 * plan.glued_error << " % from that of the held cell";
-    if (!held) note << " (" << refusal << ')';
+    if (!refusal.empty()) note << " (" << refusal << ')';
   }
   plan.as_required = plan.as_required && plan.glued_error <= wanted.requirements.force_error;
   plan.reason += note.str();

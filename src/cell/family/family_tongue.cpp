@@ -49,6 +49,8 @@ Eigen::MatrixXd coefficientsOf(const Eigen::MatrixXd& values) {
 
 }  // namespace
 
+double growthInBore(double bore_radius) { return 1.4 * bore_radius * bore_radius; }
+
 Eigen::VectorXd tongueFractions() {
   Eigen::VectorXd result(kNodes);
   for (int i = 0; i < kNodes; ++i) {
@@ -101,7 +103,8 @@ DrawnTongue FamilyTongue::at(double suction) const {
   basis(suction, value, slope);
   const Eigen::Matrix<double, 1, 3> at = value.transpose() * coefficients_, rise = slope.transpose() * coefficients_;
   const double by_suction = std::sqrt(suction / strongest_) / (1 - kLowestRoot);  // suction d(coordinate)/d(suction)
-  const double a = touch_.bore_radius, length = a * std::exp(at[0]), volume = a * a * a * std::exp(at[1]);
+  const double a = touch_.bore_radius, growth = growthInBore(a), length = a * std::exp(at[0] + growth),
+               volume = a * a * a * std::exp(at[1] + growth);
   result.length = touch_.length + length * suction;
   result.length_slope = length * (1 + by_suction * rise[0]);
   result.volume = touch_.volume + volume * suction;

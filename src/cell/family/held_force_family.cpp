@@ -89,6 +89,7 @@ HeldForce HeldForceFamily::force(const Eigen::VectorXd& coordinates) const {
 
 std::optional<HeldForce> findHeldForce(const std::string& families, const Scene& scene, std::string& reason) {
   reason.clear();
+  if (families.empty()) return std::nullopt;
   for (const std::string& file : familyFiles(families + "/held")) {
     try {
       const HeldForceFamily family(MouthFamilyData::loadBoth(file));

@@ -53,8 +53,8 @@ class HeldForceFamily {
   MouthFamilyData data_;
 };
 
-/// The held force of a scene by the first family in the folder `held` of a folder of families that has it; nothing when
-/// none has: `reason` is one line for the user.
+/// The held force of a scene by the first family in the folder `held` of a folder of families (empty: none) that has
+/// it; nothing when none has: `reason` is one line for the user.
 std::optional<HeldForce> findHeldForce(const std::string& families, const Scene& scene, std::string& reason);
 
 }  // namespace microinjection

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <stdexcept>
 
 #include "base/bytes.h"
@@ -120,11 +121,20 @@ Eigen::VectorXd MouthFamilyData::coordinatesOf(const Scene& scene) const {
   return std::move(*coordinates);
 }
 
+bool MouthFamilyData::isNearFailed(const Eigen::VectorXd& coordinates) const {
+  const auto distance = [&](const Eigen::VectorXd& point) { return (point - coordinates).norm(); };
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const MouthMember& member : members_) nearest = std::min(nearest, distance(member.coordinates));
+  return std::any_of(failed_.begin(), failed_.end(), [&](const auto& point) { return distance(point) < nearest; });
+}
+
 MouthFamilyData::Prediction MouthFamilyData::predict(const Eigen::VectorXd& coordinates) const {
   if (const std::string refusal = family_.refusal(coordinates); !refusal.empty())
     throw ConfigError("family " + family_.name() + ": " + refusal);
   if (!isComplete())
     throw ConfigError("family " + family_.name() + " has only " + std::to_string(members_.size()) + " members");
+  if (isNearFailed(coordinates))
+    throw ConfigError("family " + family_.name() + ": the member nearest to this cell has no solution");
   const Eigen::VectorXd weights = kriging_->weights(coordinates);
   const MouthMember& first = members_.front();
   Prediction result{Eigen::MatrixXd::Zero(first.curves.rows(), first.curves.cols()), Eigen::Vector2d::Zero()};

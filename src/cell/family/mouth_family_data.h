@@ -65,6 +65,7 @@ class MouthFamilyData {
 
  private:
   Eigen::MatrixXd points() const;
+  bool isNearFailed(const Eigen::VectorXd& coordinates) const;
   void prepare();
   static MouthFamilyData decode(const MouthFamily& family, const std::string& bytes);
 

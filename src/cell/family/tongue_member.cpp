@@ -16,6 +16,8 @@ namespace {
 
 constexpr double kFineEdge = 0.2;  ///< of a lip over the bore: sharper ones have finer meshes
 constexpr double kFirstRoot = 0.02, kRootStep = 0.0125, kStepGrowth = 1.06;  ///< of the suctions that are solved
+constexpr int kMeshes = 3;
+constexpr double kNextMesh = 0.3;  ///< level
 constexpr int kEvenSteps = 16, kMostSteps = 60, kFewestEquilibria = 12;
 constexpr double kSameSuction = 1e-3;  ///< relative: an end so near to the last equilibrium is that
 
@@ -34,17 +36,16 @@ struct SolvedTongues {
 
 class TonguePath {
  public:
-  explicit TonguePath(const Scene& scene)
+  TonguePath(const Scene& scene, double level)
       : touch_(touchOf(scene)),
         places_(M_PI - tonguePlaces(std::asin(touch_.radius)).array()),
-        problem_(scene, makeSceneMesh<2>(scene, meshLevel(scene)), ElementKind::kP2P1) {
-    if (!problem_.hold(0).converged) throw std::runtime_error("the cell does not rest in the mouth");
-    rest_ = problem_.held();
-  }
+        problem_(scene, makeSceneMesh<2>(scene, level), ElementKind::kP2P1) {}
 
   /// Until there is no equilibrium any more; `reason` says why.
   SolvedTongues follow(std::string& reason) {
     SolvedTongues solved;
+    if (const LoadPath::Result result = problem_.hold(0); !result.converged) return reason = result.reason, solved;
+    rest_ = problem_.held();
     double root = kFirstRoot, step = kRootStep;
     for (int i = 0; i < kMostSteps; ++i, root += step) {
       const LoadPath::Result result = problem_.hold(-root * root);
@@ -63,11 +64,11 @@ class TonguePath {
     const HeldCell held = problem_.held();
     const double a = touch_.bore_radius, s = root * root, length = held.tongue_length - rest_.tongue_length,
                  volume = held.tongue_volume - rest_.tongue_volume;
-    if (!(length > 0 && volume > 0)) throw std::runtime_error("the tongue does not grow with the suction");
+    if (!(length > 0 && volume > 0)) return;  // where the seal steps it may take more than little suction adds
     const SectionOutline outline = sectionOutline(problem_);
     Eigen::VectorXd column = Eigen::VectorXd::Zero(TongueCurves::kColumns);
-    column[TongueCurves::kLogLength] = std::log(length / (a * s));
-    column[TongueCurves::kLogVolume] = std::log(volume / (a * a * a * s));
+    column[TongueCurves::kLogLength] = std::log(length / (a * s)) - growthInBore(a);
+    column[TongueCurves::kLogVolume] = std::log(volume / (a * a * a * s)) - growthInBore(a);
     column[TongueCurves::kSeal] = held.seal_radius / touch_.radius;
     for (Eigen::Index i = 0; i < places_.size(); ++i)
       column.segment<2>(TongueCurves::kSurface + 2 * i) = displacementAt(outline, places_[i]) / a;
@@ -89,9 +90,12 @@ TongueTouch touchOf(const Scene& scene) {
 }
 
 MouthMember solveTongue(const MouthFamily& family, const Eigen::VectorXd& coordinates) {
-  TonguePath path(family.member(coordinates));
+  const Scene scene = family.member(coordinates);
   std::string reason;
-  const SolvedTongues solved = path.follow(reason);
+  SolvedTongues solved;
+  // On some meshes the contact at a wide mouth does not settle. Then the next finer one is tried.
+  for (int i = 0; i < kMeshes && solved.roots.size() < kFewestEquilibria; ++i)
+    solved = TonguePath(scene, meshLevel(scene) + kNextMesh * i).follow(reason);
   const std::size_t count = solved.roots.size();
   if (count < kFewestEquilibria) throw std::runtime_error("the tongue's equilibria end early: " + reason);
   const double end = solved.roots.back();

@@ -9,7 +9,7 @@ namespace microinjection {
 
 TongueTouch touchOf(const Scene& scene);
 
-/// Follows the member's equilibria from no suction to where they end, on one mesh (level 0 to 1 of scene_mesh.h), and
+/// Follows the member's equilibria from no suction to where they end, on one mesh (level 0 to 1.6 of scene_mesh.h), and
 /// takes its TongueCurves. Takes some seconds. @throws std::runtime_error when there are too few equilibria, and as
 /// CellProblem does
 MouthMember solveTongue(const MouthFamily& family, const Eigen::VectorXd& coordinates);

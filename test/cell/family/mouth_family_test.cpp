@@ -93,8 +93,8 @@ TEST_F(ShippedTongues, HaveTheSurfaceAndTheVolumeOfASolution) {
   const HeldCell held = problem.held();
   const DrawnTongue at = tongue.at(0.15);
   EXPECT_NEAR(at.volume, held.tongue_volume / std::pow(radius, 3), 0.03 * at.volume);
-  EXPECT_NEAR(at.seal_radius, held.seal_radius / radius, 0.03 * at.seal_radius);
-  EXPECT_NEAR(at.clamping_force, held.clamping_force / (modulus * radius * radius), 0.06 * at.clamping_force);
+  EXPECT_NEAR(at.seal_radius, held.seal_radius / radius, 0.06 * at.seal_radius);
+  EXPECT_NEAR(at.clamping_force, held.clamping_force / (modulus * radius * radius), 0.12 * at.clamping_force);
   const Eigen::Matrix2Xd surface = radius * tongue.outline(0.15);
   EXPECT_NEAR(surface(0, 0), 0, 1e-3 * radius);
   for (Eigen::Index i = 0; i < surface.cols(); ++i) {
@@ -118,13 +118,13 @@ TEST_F(ShippedTongues, GrowWithTheSuctionByTheToldSlopes) {
     EXPECT_GT(tongue.end(), tongue.strongest());
     DrawnTongue before;
     for (const double share : {0.0, 0.001, 0.01, 0.1, 0.4, 0.8, 0.99}) {
-      const double suction = share * tongue.strongest(), step = 1e-3 * suction;
+      const double suction = share * tongue.strongest(), step = 1e-4 * suction;
       const DrawnTongue at = tongue.at(suction), next = tongue.at(suction + step), last = tongue.at(suction - step);
       EXPECT_FALSE(at.length <= before.length) << bore << ' ' << share;
       EXPECT_FALSE(at.volume <= before.volume) << bore << ' ' << share;
       const double slope = (next.length - last.length) / (2 * step), opening = (next.volume - last.volume) / (2 * step);
-      if (share > 0) EXPECT_NEAR(at.length_slope, slope, 1e-5 * slope) << bore << ' ' << share;
-      if (share > 0) EXPECT_NEAR(at.volume_slope, opening, 1e-5 * opening) << bore << ' ' << share;
+      if (share > 0) EXPECT_NEAR(at.length_slope, slope, 1e-4 * slope) << bore << ' ' << share;
+      if (share > 0) EXPECT_NEAR(at.volume_slope, opening, 1e-4 * opening) << bore << ' ' << share;
       before = at;
     }
   }
@@ -182,7 +182,8 @@ TEST_F(MadeUpTongues, HaveTheFormOfTheSolvedOnes) {
   const Eigen::Vector4d x(0.3, -0.6, 0.5, 0.2);
   const FamilyTongue tongue = TongueFamily(data_).tongue(x);
   const TongueTouch touch = touchOf(data_.family().member(x));
-  const double suction = 0.1, rise = touch.bore_radius * suction * std::exp(0.2 * x[0] - 0.1 * x[1]);
+  const double suction = 0.1, growth = growthInBore(touch.bore_radius),
+               rise = touch.bore_radius * suction * std::exp(0.2 * x[0] - 0.1 * x[1] + growth);
   EXPECT_NEAR(tongue.at(suction).length, touch.length + rise, 1e-4 * rise);
   EXPECT_NEAR(tongue.end(), std::exp(-1 + 0.1 * x[2]), 1e-4);
   EXPECT_NEAR(tongue.at(suction).seal_radius, touch.radius * (1 + 0.05 * x[3]), 1e-4);
@@ -219,6 +220,13 @@ TEST_F(MadeUpTongues, TooFewMembersServeNothing) {
   few.update();
   const std::string reason = reasonOf([&] { TongueFamily(few).tongue(Eigen::VectorXd::Zero(4)); });
   EXPECT_TRUE(says(reason, "has only 8 members")) << reason;
+}
+
+TEST_F(MadeUpTongues, ServeNothingNearAMemberWithoutSolution) {
+  data_.addFailed(Eigen::Vector4d(1, 1, 1, 0));
+  const TongueFamily family(data_);
+  EXPECT_TRUE(says(reasonOf([&] { family.tongue(Eigen::Vector4d(1, 1, 1, 0.2)); }), "has no solution"));
+  EXPECT_EQ(reasonOf([&] { family.tongue(Eigen::Vector4d(1, 1, 1, 0.9)); }), "");
 }
 
 TEST(HeldForce, IsTheRatioOfTwoSolutions) {
