@@ -10,6 +10,8 @@ One table, a row a case; a study is what its cases ask:
   second solver  tongue of six cells by this project and by GetFEM, each with its own error
   needle         force on a needle of a held cell, over that of the cell glued to a ring of the seal's radius
   modulus        found from six tongues with the noise of an image, of random cells
+  families       random cells that no family has solved: tongues and surfaces of the family and solved, and the needle's force
+                 on held cells as it is served and solved
 """
 import argparse
 import csv
@@ -23,7 +25,7 @@ from pathlib import Path
 
 import numpy
 
-from cell_microinjection import ConfigError, Scene, aspirate, identify_tongue, indent
+from cell_microinjection import Cell, ConfigError, Scene, aspirate, identify_tongue, indent, tongue_family
 
 PEER = Path(__file__).resolve().parent / 'peers' / 'getfem_held_cell.py'
 LINES = ('study', 'case', 'value', 'error', 'other', 'other error', 'unit', 's')
@@ -114,8 +116,89 @@ def modulus(count, noise, seed):
         yield 'modulus', f'cell {number + 1}', found.value if found else numpy.nan, half, true, 0, 'Pa', time.perf_counter() - begin
 
 
+def log_uniform(random, low, high):
+    return float(numpy.exp(random.uniform(numpy.log(low), numpy.log(high))))
+
+
+def unseen_scene(random, family):
+    """@returns the Scene of a random cell of a family of tongues, or of held forces, as the borders in its file are"""
+    zona, force = family == 'zona', family == 'force'
+    radius = random.uniform(25, 80)
+    bore = log_uniform(random, *((0.1, 0.45) if zona else (0.2, 0.4) if force else (0.02, 0.5)))
+    edge = log_uniform(random, *((0.15, 0.5) if zona else (0.1, 0.4) if force else (0.1, 0.5)))
+    wall = 3 if zona else log_uniform(random, 1.5 if force else 1, 6)
+    poisson_ratio = 0.49 if zona or force else random.uniform(0.45, 0.499)
+    suction = random.uniform(0, 0.55)**2 if force else 0.0
+    scene = held_scene(radius, bore * radius, bore * radius * (1 + 2 * wall * edge), bore * edge * radius, poisson_ratio, pressure=-MODULUS * suction)
+    if zona:
+        material = {'model': 'neo_hookean', 'poisson_ratio': 0.49}
+        shell = {'name': 'shell', 'outer_radius': 1e-6 * radius, 'material': {**material, 'young_modulus': MODULUS}}
+        core = {'name': 'core', 'outer_radius': 1e-6 * radius * (1 - log_uniform(random, 0.08, 0.25)),
+                'material': {**material, 'young_modulus': MODULUS * log_uniform(random, 0.05, 1)}}
+        scene = Scene({**scene.to_dict(), 'cell': {'layers': [shell, core]}})
+    # Away from a tongue; its radius is the length of the solution's steps.
+    return scene.replace({'needle/tip/radius': 1e-6 * radius * (log_uniform(random, 0.05, 0.2) if force else 0.4)})
+
+
+def distance_from(points, line):
+    """@returns the largest distance of points from a polyline, (n, 2) both"""
+    begin, along = line[:-1], numpy.diff(line, axis=0)
+    offset = points[:, None] - begin
+    share = numpy.clip((offset * along).sum(2) / (along**2).sum(1), 0, 1)
+    return numpy.linalg.norm(offset - share[..., None] * along, axis=2).min(1).max()
+
+
+def family_tongues(family, count, seed):
+    random = numpy.random.default_rng(seed)
+    for number in range(1, count + 1):
+        begin = time.perf_counter()
+        scene = unseen_scene(random, family)
+        tongue = tongue_family(scene)
+        pressures = tongue.strongest * numpy.array([0.02, 0.2, 0.5, 0.8, 0.98])
+        told, solved = tongue.at(pressures), aspirate(scene, pressures, tolerance=0.02)
+        took = (time.perf_counter() - begin) / len(pressures)
+        for i in numpy.flatnonzero(solved['converged']):
+            case = f'{family} {number}, p/E = {-pressures[i] / MODULUS:.3g}'
+            length, other = told['tongue_length'][i], solved['tongue_length'][i]
+            yield (f'{family} tongues', case, 1e6 * length, 1e6 * length * told['expected_error'][i], 1e6 * other,
+                   1e6 * other * solved['error_estimate'][i], 'um', took)
+            yield (f'{family} surfaces', case, distance_from(tongue.outline(pressures[i]), solved['outline'][i]) / scene.diameter, numpy.nan, numpy.nan,
+                   numpy.nan, 'diameters', took)
+        lost = (~solved['converged']).sum()
+        if lost > 0:
+            print(f'suction: {family} {number}: no solution at {lost} of {len(pressures)} pressures that the family serves', file=sys.stderr)
+    many = numpy.linspace(tongue.strongest, 0, 100000)
+    begin = time.perf_counter()
+    tongue.at(many)
+    print(f'suction: {family}: {1e6 * (time.perf_counter() - begin) / len(many):.2g} us for a tongue with its slopes')
+
+
+def family_forces(count, seed):
+    random = numpy.random.default_rng(seed)
+    for number in range(1, count + 1):
+        begin = time.perf_counter()
+        scene = unseen_scene(random, 'force')
+        depths = 0.5 * scene.diameter * numpy.array([0.1, 0.2, 0.4])
+        cell = Cell(scene, 'surrogate')
+        told, solved = cell.force(cell.tips(depths))[:, 2], indent(scene, depths, tolerance=0.02)
+        took = (time.perf_counter() - begin) / len(depths)
+        for i in numpy.flatnonzero(solved['converged']):
+            force = solved['force'][i, 2]
+            yield ('held forces', f'cell {number}, {1e6 * depths[i]:.3g} um', 1e6 * told[i], 1e6 * told[i] * cell.expected_error[1], 1e6 * force,
+                   1e6 * force * solved['error_estimate'][i], 'uN', took)
+
+
+def families(count, seed):
+    yield from family_tongues('homogeneous', count, seed)
+    yield from family_forces(count, seed)
+    yield from family_tongues('zona', count, seed)
+
+
 def summary(study, rows):
     """One line on the rows of a study."""
+    if study.endswith('surfaces'):
+        distances = [row[2] for row in rows]
+        return f'{study}: {len(rows)} cases, apart by {statistics.median(distances):.2g} diameters (median), {max(distances):.2g} (worst)'
     own, error, other, other_error = (numpy.array([row[k] for row in rows], dtype=float) for k in (2, 3, 4, 5))
     good = numpy.isfinite(own) & numpy.isfinite(other)
     if not good.any():
@@ -127,11 +210,11 @@ def summary(study, rows):
 
 
 def parse_arguments():
-    studies = 'half-space,second solver,needle,modulus'
+    studies = 'half-space,second solver,needle,modulus,families'
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('--out', type=Path, required=True, help='folder of suction.csv')
     parser.add_argument('--studies', default=studies, help='default %(default)s')
-    parser.add_argument('--cells', type=int, default=30, help='whose modulus is found (default %(default)s)')
+    parser.add_argument('--cells', type=int, default=30, help='whose modulus is found, and of each family (default %(default)s)')
     parser.add_argument('--noise', type=float, default=0.1e-6, help='m, of a tongue in an image (default %(default)s)')
     parser.add_argument('--seed', type=int, default=1, help='of these cells (default %(default)s)')
     arguments = parser.parse_args()
@@ -145,19 +228,20 @@ def parse_arguments():
 def main():
     arguments = parse_arguments()
     studies = {'half-space': half_space, 'second solver': second_solver, 'needle': needle,
-               'modulus': lambda: modulus(arguments.cells, arguments.noise, arguments.seed)}
+               'modulus': lambda: modulus(arguments.cells, arguments.noise, arguments.seed),
+               'families': lambda: families(arguments.cells, arguments.seed)}
     lines = []
     with (arguments.out / 'suction.csv').open('w', encoding='utf-8', newline='') as file:
         table = csv.writer(file)
         table.writerow(LINES)
         for study in arguments.studies:
-            rows = []
+            rows = {}
             for row in studies[study]():
-                rows.append(row)
+                rows.setdefault(row[0], []).append(row)
                 table.writerow([row[0], row[1], *(f'{value:.6g}' for value in row[2:6]), row[6], f'{row[7]:.3g}'])
                 file.flush()
                 print(f'{row[0]}: {row[1]}: {row[2]:.5g} +- {row[3]:.2g} {row[6]}, other {row[4]:.5g} +- {row[5]:.2g}', flush=True)
-            lines.append(summary(study, rows))
+            lines += [summary(*each) for each in rows.items()]
     print('\n'.join(lines))
 
 

@@ -17,6 +17,7 @@
 #include "base/worker_processes.h"
 #include "cell/choice/model_choice.h"
 #include "cell/family/family_cell.h"
+#include "cell/family/mouth_family.h"
 #include "cell/model/scene.h"
 #include "cell/model/similarity.h"
 #include "cell/surrogate/surrogate_data.h"
@@ -24,6 +25,7 @@
 #include "commands/path_store.h"
 #include "commands/prepare_arguments.h"
 #include "commands/prepare_family.h"
+#include "commands/prepare_mouth_family.h"
 #include "commands/run_tasks.h"
 #include "commands/worker.h"
 
@@ -160,7 +162,9 @@ int work(const PrepareArguments& arguments) {
       return kDone;
     }
     if (arguments.member >= 0) return solveCheckPath(arguments.family, arguments.member, arguments.ray);
-    return solveFamilyPath(arguments.family.file, arguments.at, arguments.ray);
+    if (arguments.ray >= 0) return solveFamilyPath(arguments.family.file, arguments.at, arguments.ray);
+    solveMouthMember(arguments.family.file, arguments.at);
+    return kDone;
   } catch (const std::exception&) {
     std::fputc('\n', stderr);  // ends the progress line of the preparation
     throw;
@@ -184,6 +188,7 @@ bool isServed(const PrepareArguments& arguments) {
 
 int prepare(const PrepareArguments& arguments) {
   if (arguments.family.file.empty()) return isServed(arguments) ? kDone : Preparing(arguments).run();
+  if (MouthFamily::kindOf(arguments.family.file)) return prepareMouthFamily(arguments.family), kDone;
   arguments.family.check > 0 ? checkFamily(arguments.family) : prepareFamily(arguments.family);
   return kDone;
 }
@@ -196,8 +201,8 @@ int run(int argc, char** argv) {
       flushStandardOutput();
       return kDone;
     }
-    const int status =
-        arguments.ray >= 0 || arguments.axis >= 0 || arguments.task >= 0 ? work(arguments) : prepare(arguments);
+    const bool worker = arguments.ray >= 0 || arguments.axis >= 0 || arguments.task >= 0 || !arguments.at.empty();
+    const int status = worker ? work(arguments) : prepare(arguments);
     flushStandardOutput();
     return status;
   } catch (const boost::program_options::error& error) {

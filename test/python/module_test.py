@@ -105,6 +105,23 @@ class ACellTest(unittest.TestCase):
         with self.assertRaisesRegex(cm.ConfigError, 'at most 0'):
             cm.identify_tongue([1, 2, 3, 4], [1, 2, 3, 4], scene)
 
+    def test_a_family_has_the_tongue_at_once(self):
+        scene = cm.Scene.load('mouse_oocyte_held')
+        tongue = cm.tongue_family(scene)
+        drawn, told = cm.aspirate(scene, [-300, -2100], tolerance=0.02), tongue.at([-300, -2100])
+        numpy.testing.assert_allclose(told['tongue_length'], drawn['tongue_length'], rtol=0.02)
+        numpy.testing.assert_allclose(told['clamping_force'], drawn['clamping_force'], rtol=0.1)
+        self.assertTrue((told['length_slope'] < 0).all())  # the pressure falls as the tongue grows
+        outline = tongue.outline(-2100)
+        self.assertAlmostEqual(outline[0, 1], drawn['outline'][-1][0, 1], delta=0.1e-6)
+        self.assertTrue(tongue.end < tongue.strongest < -2100)
+        self.assertTrue(numpy.isnan(tongue.at([1.01 * tongue.strongest])['tongue_length']).all())
+        self.assertIsNone(tongue.outline(1.0))
+        with self.assertRaisesRegex(cm.ConfigError, 'bore_radius = 0.714.*must be from 0.02 to 0.5'):
+            cm.tongue_family(scene.replace({'holding_pipette/mouth/inner_radius': 20e-6}))
+        with self.assertRaisesRegex(cm.ConfigError, 'has no mouth'):
+            cm.tongue_family(SCENE)
+
     def test_stiffness_is_the_derivative_of_the_force(self):
         tip = self.CELL.tips([5e-6], (3e-6, 0))[0]
         stiffness = self.CELL.stiffness(tip)

@@ -10,6 +10,7 @@
 #include "cell/choice/member_change.h"
 #include "cell/choice/model_choice.h"
 #include "cell/family/family_cell.h"
+#include "cell/family/held_force_family.h"
 #include "cell/model/live_cell.h"
 #include "cell/model/puncturable_cell.h"
 #include "cell/surrogate/surrogate_cell_model.h"
@@ -18,7 +19,7 @@ namespace microinjection {
 namespace {
 
 /// Largest relative difference of the needle's force between a held cell and the glued one, of one homogeneous cell in
-/// 20 cases: ./dev bench suction.
+/// 20 cases: ./dev bench suction. Where no family of held forces has the cell.
 constexpr double kGluedError = 0.06;
 
 /// Why a scene's own surrogate data cannot be used, and what to do; `call` prepares them.
@@ -89,6 +90,32 @@ ServingPlan planBetween(const Scene& scene, const std::string& model, const std:
   return plan;
 }
 
+/// What suction changes of the planned force: surrogate data for a needle on the axis are corrected, where a family of
+/// held forces has the cell.
+void tellOfSuction(const Scene& wanted, const std::string& families, ServingPlan& plan) {
+  std::string refusal;
+  const std::optional<HeldForce> held = findHeldForce(families, wanted, refusal);
+  std::ostringstream note;
+  note << "; suction holds the cell, which is served as glued to a ring of "
+       << 1e6 * plan.scene->holding_pipette.contact_radius << " um: ";
+  note.precision(2);
+  if (held && plan.source.data && plan.served == Served::kSurrogate && wanted.needle.offset.isZero(0)) {
+    auto corrected = std::make_shared<SurrogateData>(*plan.source.data);
+    held->applyTo(*corrected, wanted.radius());
+    plan.source.data = std::move(corrected);
+    plan.held_family = families;
+    plan.glued_error = held->error();
+    note << "on the axis its force is corrected by up to " << 100 * held->largestChange()
+         << " % to that of the held cell, with an error of " << 100 * held->error() << " %";
+  } else {
+    plan.glued_error = held ? held->largestChange() : kGluedError;
+    note << "its force is up to " << 100 * plan.glued_error << " % from that of the held cell";
+    if (!refusal.empty()) note << " (" << refusal << ')';
+  }
+  plan.as_required = plan.as_required && plan.glued_error <= wanted.requirements.force_error;
+  plan.reason += note.str();
+}
+
 }  // namespace
 
 ServingPlan planServing(const Scene& wanted, const std::string& model, const std::string& families,
@@ -107,15 +134,7 @@ ServingPlan planServing(const Scene& wanted, const std::string& model, const std
     plan = planBetween(scene, model, families, call);
   }
   plan.scene = std::make_shared<const Scene>(scene);
-  if (wanted.holding_pipette.mouth) {
-    plan.glued_error = kGluedError;
-    plan.as_required = plan.as_required && kGluedError <= wanted.requirements.force_error;
-    std::ostringstream note;
-    note << "; suction holds the cell, which is served as glued to a ring of "
-         << 1e6 * scene.holding_pipette.contact_radius << " um: its force is up to " << 100 * kGluedError
-         << " % from that of the held cell";
-    plan.reason += note.str();
-  }
+  if (wanted.holding_pipette.mouth) tellOfSuction(wanted, families, plan);
   return plan;
 }
 
@@ -131,7 +150,8 @@ ChosenCellModel makeCellModel(const Scene& wanted, const std::string& model, con
     tracker = std::move(explicit_model);
   } else if (plan.served == Served::kSurrogate) {
     auto surrogate = std::make_unique<SurrogateCellModel>(scene, plan.source.data);
-    if (plan.source.family) chosen.change = std::make_unique<MemberChange>(scene, plan.source.family, *surrogate);
+    if (plan.source.family)
+      chosen.change = std::make_unique<MemberChange>(wanted, plan.source.family, *surrogate, plan.held_family);
     tracker = std::move(surrogate);
   } else {
     std::shared_ptr<const LiveCell> cell;

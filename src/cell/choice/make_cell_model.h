@@ -38,6 +38,8 @@ struct ServingPlan {
   /// What is served in place of the scene: one that suction holds is glued, see Scene::glued().
   std::shared_ptr<const Scene> scene{};
   double glued_error = 0;  ///< relative, of the force on the axis, that this adds; 0: the scene is itself
+  /// Folder of the families by whose held forces the surrogate data are corrected, see HeldForce; empty: they are not.
+  std::string held_family{};
 };
 
 /// The first half of makeCellModel(), for those who do not serve a moving needle. `call`: the command that prepares the

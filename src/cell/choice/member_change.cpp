@@ -1,15 +1,25 @@
 #include "cell/choice/member_change.h"
 
 #include "base/errors.h"
+#include "cell/family/held_force_family.h"
 
 namespace microinjection {
 
 std::string MemberChange::change(const std::vector<CellParameter>& parameters) {
   const Scene next = withParameters(scene_, parameters);
+  const Scene glued = next.glued();
   std::string reason;
-  const auto member = makeFamilyCell(family_, next, reason);
+  const auto member = makeFamilyCell(family_, glued, reason);
   if (!member) throw ConfigError(reason.empty() ? "the cell is of another form than its family" : reason);
-  cell_.change(next, member->data);
+  std::shared_ptr<const SurrogateData> data = member->data;
+  if (!held_family_.empty()) {
+    const std::optional<HeldForce> held = findHeldForce(held_family_, next, reason);
+    if (!held) throw ConfigError("suction holds the cell: " + reason);
+    auto corrected = std::make_shared<SurrogateData>(*data);
+    held->applyTo(*corrected, next.radius());
+    data = std::move(corrected);
+  }
+  cell_.change(glued, data);
   scene_ = next;
   return member->description;
 }

@@ -18,11 +18,15 @@ namespace {
 constexpr double kRoundingOfRange = 1e-9;
 constexpr double kDepthExponent = 2.5;  ///< of the depth as a function of the tip's radius
 
-/// Reads `key: {ratio: [low, high], ...}`.
-void readParameters(ConfigReader& file, const std::string& key, int layers,
-                    std::vector<Family::Parameter>& parameters) {
+void addMisfit(std::string& text, const std::string& misfit) { text += (text.empty() ? "" : ", ") + misfit; }
+
+}  // namespace
+
+std::vector<Family::Parameter> readFamilyParameters(ConfigReader& file, const std::string& key, int layers,
+                                                    const std::vector<Ratio>& table) {
+  std::vector<Family::Parameter> parameters;
   ConfigReader reader = file.section(key);
-  for (const Ratio& ratio : ratios()) {
+  for (const Ratio& ratio : table) {
     if (!reader.has(ratio.name)) continue;
     Eigen::VectorXd borders = Eigen::Vector2d::Zero();
     reader.vector(ratio.name, borders, ratio.logarithmic ? Range::positive() : Range::nonNegative());
@@ -30,11 +34,8 @@ void readParameters(ConfigReader& file, const std::string& key, int layers,
     if (layers < ratio.layers) reader.error(ratio.name, "must be left out: the scene's cell has one layer");
     parameters.push_back({&ratio, borders[0], borders[1]});
   }
+  return parameters;
 }
-
-void addMisfit(std::string& text, const std::string& misfit) { text += (text.empty() ? "" : ", ") + misfit; }
-
-}  // namespace
 
 std::string Family::Parameter::text(double value) const {
   std::ostringstream out;
@@ -65,8 +66,8 @@ Family Family::load(const std::string& path) {
   range.number("half_depth_tip", family.half_depth_tip_, Range::positive(), ConfigReader::kRequired);
   if (scene) family.scene_ = withoutDimension(parseDimensionlessScene(scene, path + ": scene"));
   const int layers = static_cast<int>(family.scene_.cell.layers.size());
-  readParameters(reader, "parameters", layers, family.parameters_);
-  readParameters(reader, "constants", layers, family.constants_);
+  family.parameters_ = readFamilyParameters(reader, "parameters", layers, ratios());
+  family.constants_ = readFamilyParameters(reader, "constants", layers, ratios());
   if (family.parameters_.empty()) reader.error("parameters", "must name at least one ratio");
   reader.finish();
   SurrogatePlan::check(family.scene_);

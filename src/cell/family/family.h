@@ -11,6 +11,8 @@
 
 namespace microinjection {
 
+class ConfigReader;
+
 /// Cells under a tip that differ in a few ratios only (config/families/*.yaml), without dimension. A preparation of
 /// some minutes for each cell is too long when cells differ from one to the next; in a family the surrogate data of a
 /// few members are solved, and those of any other cell are interpolated between them (FamilyData).
@@ -72,5 +74,10 @@ class Family {
   std::vector<Parameter> parameters_, constants_;
   double angle_ = 0, deepest_ = 0, half_depth_tip_ = 0;
 };
+
+/// Reads `key: {ratio: [low, high], ...}` of the ratios of `table`.
+/// @param layers of the family's cells: a ratio of more is an error
+std::vector<Family::Parameter> readFamilyParameters(ConfigReader& file, const std::string& key, int layers,
+                                                    const std::vector<Ratio>& table);
 
 }  // namespace microinjection

@@ -125,7 +125,7 @@ void FamilyData::update() {
     }
   }
   const LeaveOneOut left_out(family_, members_, scales, curves);
-  covariance_ = chooseCovariance(points(), left_out);
+  covariance_ = chooseCovariance(points(), [&](const auto& weights) { return left_out.errors(weights); });
   measured_ = {};
   prepare();
   std::vector<double> all, relative;

@@ -13,12 +13,6 @@
 
 namespace microinjection {
 
-/// Expected relative force error of a cell that a family serves.
-struct ExpectedError {
-  double median = 0;
-  double common = 0;  ///< exceeded by one of ten places
-};
-
 /// Errors that were measured at converged places of members that the family has not.
 struct MeasuredError {
   int members = 0;  ///< drawn at random; 0: nothing was measured

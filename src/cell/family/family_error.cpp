@@ -11,6 +11,8 @@ namespace {
 
 constexpr double kLengths[] = {1, 1.5, 2, 3, 4.5, 9}, kNoises[] = {1e-6, 1e-4, 1e-3, 3e-3, 1e-2, 3e-2};
 constexpr double kDefaultLength = 2;
+constexpr Eigen::Index kGridded = 3;  ///< most coordinates that are tried on a grid; more: one length after the other
+constexpr int kSweeps = 3;
 constexpr double kLarge = 0.02;   ///< of the largest force: smaller ones have no error
 constexpr double kOutlier = 0.1;  ///< error above which a place does not count more
 
@@ -89,21 +91,41 @@ std::vector<std::vector<double>> LeaveOneOut::errors(const Eigen::MatrixXd& weig
   return result;
 }
 
-Covariance chooseCovariance(const Eigen::MatrixXd& points, const LeaveOneOut& errors) {
+Covariance chooseCovariance(const Eigen::MatrixXd& points, const PredictionErrors& errors) {
   const Eigen::Index dimension = points.rows();
   Covariance best{Eigen::VectorXd::Constant(dimension, kDefaultLength), kNoises[0]};
   if (points.cols() < 4 * dimension) return best;
-  constexpr int kCount = sizeof(kLengths) / sizeof(*kLengths);
-  const auto combinations = static_cast<int>(std::lround(std::pow(kCount, dimension)));
   double least = std::numeric_limits<double>::infinity();
-  for (const double noise : kNoises) {
-    for (int i = 0; i < combinations; ++i) {
-      Covariance trial{Eigen::VectorXd(dimension), noise};
-      for (Eigen::Index k = 0, rest = i; k < dimension; ++k, rest /= kCount) trial.lengths[k] = kLengths[rest % kCount];
-      const double bad = badness(errors.errors(Kriging(points, trial.lengths, noise).leaveOneOut()));
-      if (bad >= least) continue;
-      least = bad;
-      best = trial;
+  const auto tryOne = [&](const Covariance& trial) {
+    const double bad = badness(errors(Kriging(points, trial.lengths, trial.noise).leaveOneOut()));
+    if (bad >= least) return;
+    least = bad;
+    best = trial;
+  };
+  constexpr int kCount = sizeof(kLengths) / sizeof(*kLengths);
+  if (dimension <= kGridded) {
+    const auto combinations = static_cast<int>(std::lround(std::pow(kCount, dimension)));
+    for (const double noise : kNoises) {
+      for (int i = 0; i < combinations; ++i) {
+        Covariance trial{Eigen::VectorXd(dimension), noise};
+        for (Eigen::Index k = 0, rest = i; k < dimension; ++k, rest /= kCount)
+          trial.lengths[k] = kLengths[rest % kCount];
+        tryOne(trial);
+      }
+    }
+    return best;
+  }
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    for (Eigen::Index k = 0; k < dimension; ++k) {
+      const Covariance from = best;
+      for (const double noise : kNoises) {
+        for (const double length : kLengths) {
+          Covariance trial = from;
+          trial.noise = noise;
+          trial.lengths[k] = length;
+          tryOne(trial);
+        }
+      }
     }
   }
   return best;

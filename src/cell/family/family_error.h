@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <vector>
 
 #include "cell/family/axis_force.h"
@@ -8,6 +9,12 @@
 #include "cell/family/kriging.h"
 
 namespace microinjection {
+
+/// Expected relative error of what that a family serves.
+struct ExpectedError {
+  double median = 0;
+  double common = 0;  ///< exceeded by one of ten places
+};
 
 /// Relative force error of a family's members, as far as it comes from the interpolation between
 /// them: each member is predicted from all others.
@@ -43,8 +50,11 @@ struct Covariance {
   double noise = 0;
 };
 
-/// Chosen among a grid by the errors of LeaveOneOut; lengths of 2 for fewer than four times as many
-/// members as coordinates.
-Covariance chooseCovariance(const Eigen::MatrixXd& points, const LeaveOneOut& errors);
+/// Relative errors of each member that is predicted with these weights (rows) from the others.
+using PredictionErrors = std::function<std::vector<std::vector<double>>(const Eigen::MatrixXd& weights)>;
+
+/// Chosen among a grid by the errors of leaving members out, with more than three coordinates by descent on it; lengths
+/// of 2 for fewer than four times as many members as coordinates.
+Covariance chooseCovariance(const Eigen::MatrixXd& points, const PredictionErrors& errors);
 
 }  // namespace microinjection

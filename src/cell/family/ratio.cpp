@@ -1,5 +1,8 @@
 #include "cell/family/ratio.h"
 
+#include <cmath>
+#include <string>
+
 #include "cell/model/similarity.h"
 
 namespace microinjection {
@@ -20,6 +23,41 @@ const std::vector<Ratio>& ratios() {
        [](Scene& scene, double value) { scene.cell.layers[1].outer_radius = rounded(1 - value); }},
       {"core_modulus", true, 2, [](const Scene& scene) { return scene.cell.layers[1].material.young_modulus; },
        [](Scene& scene, double value) { scene.cell.layers[1].material.young_modulus = rounded(value); }}};
+  return all;
+}
+
+const std::vector<Ratio>& mouthRatios() {
+  using Mouth = Scene::Mouth;
+  static const std::vector<Ratio> all = [] {
+    std::vector<Ratio> result = {
+        {"bore_radius", true, 1, [](const Scene& scene) { return scene.holding_pipette.mouth->inner_radius; },
+         [](Scene& scene, double value) { scene.holding_pipette.mouth->inner_radius = rounded(value); }},
+        {"lip_edge", true, 1,
+         [](const Scene& scene) {
+           const Mouth& mouth = *scene.holding_pipette.mouth;
+           return mouth.edge_radius / mouth.inner_radius;
+         },
+         [](Scene& scene, double value) {
+           Mouth& mouth = *scene.holding_pipette.mouth;
+           mouth.edge_radius = rounded(value * mouth.inner_radius);
+         }},
+        {"wall", true, 1,
+         [](const Scene& scene) {
+           const Mouth& mouth = *scene.holding_pipette.mouth;
+           return (mouth.outer_radius - mouth.inner_radius) / (2 * mouth.edge_radius);
+         },
+         [](Scene& scene, double value) {
+           Mouth& mouth = *scene.holding_pipette.mouth;
+           mouth.outer_radius = rounded(mouth.inner_radius + 2 * value * mouth.edge_radius);
+         }},
+        {"suction_root", false, 1, [](const Scene& scene) { return std::sqrt(-scene.holding_pipette.mouth->pressure); },
+         [](Scene& scene, double value) { scene.holding_pipette.mouth->pressure = rounded(-value * value); }}};
+    for (const Ratio& ratio : ratios()) {
+      const std::string name = ratio.name;
+      if (name != "holding_radius" && name != "surface_tension") result.push_back(ratio);
+    }
+    return result;
+  }();
   return all;
 }
 

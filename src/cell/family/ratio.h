@@ -21,4 +21,10 @@ struct Ratio {
 /// layers. `get` and `set` take a scene without dimension; `set` rounds as withoutDimension does.
 const std::vector<Ratio>& ratios();
 
+/// Ratios that determine a cell in the mouth of a pipette. bore_radius: over the cell's radius; lip_edge:
+/// radius of the lip's edge over that of the bore; wall: thickness over twice the edge's radius, 1 for a lip that is
+/// round all over; suction_root: the root of the suction over the modulus; then those of ratios() but holding_radius
+/// and surface_tension. `set` must be called in this order. @pre the scenes have a mouth
+const std::vector<Ratio>& mouthRatios();
+
 }  // namespace microinjection

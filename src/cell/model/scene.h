@@ -138,8 +138,8 @@ struct Scene {
   /// Throws ConfigError that names the purpose for a cell that suction holds.
   void requireGlued(const std::string& purpose) const;
   /// The scene with its cell glued to a ring where it would first touch the mouth that now holds it by suction; itself
-  /// without a mouth. On the axis the needle's force then is up to 6 % from that of the held cell, and from a suction
-  /// of a twentieth of the modulus on up to 3 % (doc/reference/benchmarks.md, Suction).
+  /// without a mouth. Of a cell 80 um across in a bore of 24 um, the needle's force on the axis then is up to 6 % from
+  /// that of the held cell (doc/reference/benchmarks.md, Suction); HeldForce knows the ratio of others.
   Scene glued() const;
   static constexpr double kGluedError = 0.06;  ///< relative, largest, of the needle's force on glued()
 };

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "cell/model/cell_problem.h"
 #include "cell/model/scene_mesh.h"
@@ -13,12 +12,23 @@ namespace {
 
 constexpr double kLevels[] = {-1, 0, 1};
 
-/// Displacement (m; away from the axis, along it) of the section's outline as a function of the
-/// angle (rad) from the pole.
-using Outline = std::map<double, Eigen::Vector2d>;
+Eigen::VectorXf turned(const SectionOutline& outline, const Eigen::VectorXd& surface) {
+  Eigen::VectorXf result(surface.size());
+  for (Eigen::Index i = 0; i + 2 < surface.size(); i += 3) {
+    const Eigen::Vector3d x = surface.segment<3>(i);
+    const double away = x.head<2>().norm();
+    const Eigen::Vector2d moved = displacementAt(outline, std::atan2(away, x.z()));
+    const Eigen::Vector2d side = away > 0 ? Eigen::Vector2d(moved[0] / away * x.head<2>()) : Eigen::Vector2d::Zero();
+    result.segment<3>(i) =
+        Eigen::Vector3f(static_cast<float>(side.x()), static_cast<float>(side.y()), static_cast<float>(moved[1]));
+  }
+  return result;
+}
 
-Outline outline(const CellProblem<2>& problem) {
-  Outline result;
+}  // namespace
+
+SectionOutline sectionOutline(const CellProblem<2>& problem) {
+  SectionOutline result;
   const QuadraticMesh<2>& mesh = problem.body().mesh();
   for (const auto& facet : mesh.facets) {
     if (facet.layer != 0) continue;
@@ -29,7 +39,7 @@ Outline outline(const CellProblem<2>& problem) {
   return result;
 }
 
-Eigen::Vector2d interpolate(const Outline& outline, double angle) {
+Eigen::Vector2d displacementAt(const SectionOutline& outline, double angle) {
   const auto next = outline.upper_bound(angle);
   if (next == outline.begin()) return next->second;
   const auto last = std::prev(next);
@@ -37,21 +47,6 @@ Eigen::Vector2d interpolate(const Outline& outline, double angle) {
   const double share = (angle - last->first) / (next->first - last->first);
   return (1 - share) * last->second + share * next->second;
 }
-
-Eigen::VectorXf turned(const Outline& outline, const Eigen::VectorXd& surface) {
-  Eigen::VectorXf result(surface.size());
-  for (Eigen::Index i = 0; i + 2 < surface.size(); i += 3) {
-    const Eigen::Vector3d x = surface.segment<3>(i);
-    const double away = x.head<2>().norm();
-    const Eigen::Vector2d moved = interpolate(outline, std::atan2(away, x.z()));
-    const Eigen::Vector2d side = away > 0 ? Eigen::Vector2d(moved[0] / away * x.head<2>()) : Eigen::Vector2d::Zero();
-    result.segment<3>(i) =
-        Eigen::Vector3f(static_cast<float>(side.x()), static_cast<float>(side.y()), static_cast<float>(moved[1]));
-  }
-  return result;
-}
-
-}  // namespace
 
 std::vector<TrainingSample> solveAxis(const Scene& scene, const std::vector<double>& depths) {
   Scene axial = SurrogatePlan::elastic(scene);
@@ -66,7 +61,7 @@ std::vector<TrainingSample> solveAxis(const Scene& scene, const std::vector<doub
       if (i == samples.size()) samples.emplace_back();
       samples[i].displacement = solution.tip_displacement;
       samples[i].force = solution.force;
-      samples[i].surface = turned(outline(problem), surface);
+      samples[i].surface = turned(sectionOutline(problem), surface);
     }
   }
   return samples;

@@ -2,13 +2,17 @@
 
 #include <pybind11/stl.h>
 
+#include <cmath>
+#include <optional>
 #include <sstream>
 
 #include "base/atomic_file.h"
 #include "base/errors.h"
+#include "cell/family/tongue_family.h"
 #include "cell/model/contact_frame.h"
 #include "cell/model/converged_force.h"
 #include "cell/model/converged_tongue.h"
+#include "cell/model/similarity.h"
 #include "python/bindings/arrays.h"
 #include "python/bindings/module.h"
 #include "python/bindings/scene_value.h"
@@ -205,6 +209,53 @@ py::dict aspirateScene(const SceneValue& scene, const py::object& pressures, dou
   return result;
 }
 
+/// A FamilyTongue in SI units.
+class TongueValue {
+ public:
+  TongueValue(const Scene& scene, const std::string& families) : units_(Similarity::of(scene)) {
+    std::string reason;
+    tongue_ = findFamilyTongue(families, scene, reason);
+    if (!tongue_) throw ConfigError("no family has the scene's tongue: " + reason);
+  }
+
+  /// Pa, gauge.
+  double strongest() const { return -units_.modulus * tongue_->strongest(); }
+  double end() const { return -units_.modulus * tongue_->end(); }
+  bool equilibriumEnds() const { return tongue_->equilibriumEnds(); }
+
+  py::dict at(const py::object& pressures) const {
+    const Eigen::VectorXd pressure = vectorOf("pressures", pressures);
+    const double length = units_.length, volume = std::pow(length, 3);
+    Eigen::MatrixXd values(pressure.size(), 7);
+    {
+      const py::gil_scoped_release others;
+      for (Eigen::Index i = 0; i < pressure.size(); ++i) {
+        const DrawnTongue at = tongue_->at(-pressure[i] / units_.modulus);
+        values.row(i) << length * at.length, volume * at.volume, length * at.seal_radius,
+            units_.force() * at.clamping_force, -length / units_.modulus * at.length_slope,
+            -volume / units_.modulus * at.volume_slope, at.expected_error;
+      }
+    }
+    py::dict result;
+    result["pressure"] = toArray(pressure);
+    int column = 0;
+    for (const char* name : {"tongue_length", "tongue_volume", "seal_radius", "clamping_force", "length_slope",
+                             "volume_slope", "expected_error"})
+      result[name] = toArray(Eigen::VectorXd(values.col(column++)));
+    return result;
+  }
+
+  py::object outline(double pressure) const {
+    const double suction = -pressure / units_.modulus;
+    if (!(suction >= 0 && suction <= tongue_->strongest())) return py::none();
+    return rowsOf(Eigen::Matrix2Xd(units_.length * tongue_->outline(suction)));
+  }
+
+ private:
+  Similarity units_;
+  std::optional<FamilyTongue> tongue_;
+};
+
 }  // namespace
 
 void bindCell(py::module_& module) {
@@ -256,6 +307,16 @@ void bindCell(py::module_& module) {
   module.def("indent", &indentScene, py::arg("scene"), py::arg("depths"), py::kw_only(),
              py::arg("lateral") = py::none(), py::arg("speed") = py::none(), py::arg("hold") = 0.0,
              py::arg("withdrawal") = py::none(), py::arg("tolerance") = 0.005, py::arg("time") = 600.0);
+  py::class_<TongueValue>(module, "FamilyTongue")
+      .def(py::init([](const SceneValue& scene, const py::object& families) {
+             return TongueValue(scene.scene(), familiesOr(families));
+           }),
+           py::arg("scene"), py::arg("families") = py::none())
+      .def("at", &TongueValue::at, py::arg("pressures"))
+      .def("outline", &TongueValue::outline, py::arg("pressure"))
+      .def_property_readonly("strongest", &TongueValue::strongest)
+      .def_property_readonly("end", &TongueValue::end)
+      .def_property_readonly("equilibrium_ends", &TongueValue::equilibriumEnds);
   module.def("aspirate", &aspirateScene, py::arg("scene"), py::arg("pressures") = py::none(), py::kw_only(),
              py::arg("tolerance") = 0.005);
 }

@@ -18,10 +18,10 @@ import tempfile
 import numpy
 
 from cell_microinjection import _core
-from cell_microinjection._core import Calibration, ConfigError, Vision, WriteError, aspirate, indent, package_folder
+from cell_microinjection._core import Calibration, ConfigError, FamilyTongue, Vision, WriteError, aspirate, indent, package_folder
 
 __all__ = ['Calibration', 'Cell', 'ConfigError', 'Estimate', 'Identification', 'Measurement', 'Scene', 'Vision', 'WriteError',
-           'aspirate', 'find_tip', 'identify', 'identify_tongue', 'indent', 'load_record', 'measure_cell', 'package_folder', 'render_specimen']
+           'aspirate', 'find_tip', 'identify', 'identify_tongue', 'indent', 'load_record', 'measure_cell', 'package_folder', 'render_specimen', 'tongue_family']
 __version__ = _core.__version__
 
 
@@ -157,6 +157,18 @@ def identify_tongue(pressure, length, scene):
     found = _core.identify_tongue(pressure, length, scene)
     found['estimates'] = {name: Estimate(**each) for name, each in found['estimates'].items()}
     return Identification(**found, notes=[], position=numpy.asarray(length, dtype=float), force=numpy.empty(0))
+
+
+def tongue_family(scene, families=None):
+    """The tongue of a scene's cell from a family of solved ones, in microseconds (doc/guide/hold.md#at-once).
+
+    scene: a Scene with holding_pipette/mouth, a path or a name. families: a folder; default: config/families.
+    @returns a FamilyTongue: at(pressures) has the arrays of aspirate(), the slopes over the pressure and the expected
+        error of the length, nan where it is not known; outline(pressure) the surface, (n, 2), r and z; strongest and end,
+        Pa, the pressures to which it is known and at which the equilibria end
+    @raises ConfigError that names what is outside of the families, its value and what is allowed
+    """
+    return FamilyTongue(scene if isinstance(scene, _core.Scene) else Scene.load(scene), families)
 
 
 def _write_table(path, record):

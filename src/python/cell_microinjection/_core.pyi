@@ -67,6 +67,20 @@ def indent(scene: Scene, depths: ArrayLike, *, lateral: Optional[ArrayLike] = ..
 def aspirate(scene: Scene, pressures: Optional[ArrayLike] = ..., *, tolerance: float = ...) -> dict[str, Any]: ...
 
 
+class FamilyTongue:
+    def __init__(self, scene: Scene, families: Optional[str] = ...) -> None: ...
+    # Arrays (n,) of pressure, tongue_length, tongue_volume, seal_radius, clamping_force, length_slope (m/Pa),
+    # volume_slope (m^3/Pa), expected_error.
+    def at(self, pressures: ArrayLike) -> dict[str, Floats]: ...
+    def outline(self, pressure: float) -> Optional[Floats]: ...  # (n, 2), m
+    @property
+    def strongest(self) -> float: ...  # Pa, gauge
+    @property
+    def end(self) -> float: ...  # Pa, gauge
+    @property
+    def equilibrium_ends(self) -> bool: ...  # there; else the solution does
+
+
 def identify_tongue(pressure: ArrayLike, length: ArrayLike, scene: Scene) -> dict[str, Any]: ...
 
 

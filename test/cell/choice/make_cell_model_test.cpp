@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -11,6 +12,7 @@
 
 #include "base/errors.h"
 #include "cell/choice/model_choice.h"
+#include "cell/family/held_force_family.h"
 #include "cell/family/made_up_family.h"
 #include "cell/surrogate/cached_cell.h"
 
@@ -64,6 +66,56 @@ TEST_F(ServeNeedle, AHeldCellIsServedAsGluedAndSaysHowFarThatIsOff) {
   EXPECT_FALSE(plan.scene->holding_pipette.mouth);
   EXPECT_NEAR(plan.scene->holding_pipette.contact_radius, 12.5e-6 * 28 / 30.5, 1e-12);
   EXPECT_EQ(planServing(pipette(), "live", "", "").glued_error, 0);
+}
+
+constexpr char kShipped[] = MICROINJECTION_SOURCE_DIR "/config/families";
+
+Scene heldMouse() { return loadScene(MICROINJECTION_SOURCE_DIR "/config/cells/mouse_oocyte_held.yaml"); }
+
+/// N, on the axis 8 um below the touch.
+double forceOf(CellModel& cell, const Scene& scene) {
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  double time = 0;
+  for (double depth = -0.5e-6; depth < 8e-6; depth += 0.05e-6)
+    cell.step({0, 0, scene.radius() - depth}, up, time += 1e-3);
+  return cell.step({0, 0, scene.radius() - 8e-6}, up, time + 1e-3).force.z();
+}
+
+TEST_F(ServeNeedle, AHeldCellOfAFamilyHasTheForceOfTheHeldCellOnTheAxis) {
+  Scene held = heldMouse();
+  held.holding_pipette.mouth->pressure = -200;
+  CellModelConfig config;
+  config.families = kShipped;
+  const ChosenCellModel served = makeCellModel(held, "surrogate", config, "a.yaml");
+  const ChosenCellModel glued = makeCellModel(held.glued(), "surrogate", config, "a.yaml");
+  EXPECT_TRUE(has(served.description, "on the axis its force is corrected by up to ")) << served.description;
+  std::string reason;
+  const auto ratio = findHeldForce(kShipped, held, reason);
+  ASSERT_TRUE(ratio) << reason;
+  const double expected = ratio->ratio(8e-6 / held.radius());
+  EXPECT_LT(expected, 0.99);
+  EXPECT_NEAR(forceOf(*served.cell, held) / forceOf(*glued.cell, held), expected, 0.002);
+  Scene aside = held;
+  aside.needle.offset.x() = 3e-6;
+  const ServingPlan plan = planServing(aside, "surrogate", kShipped, "");
+  EXPECT_TRUE(plan.held_family.empty());
+  EXPECT_EQ(plan.glued_error, ratio->largestChange());
+  EXPECT_LT(planServing(held, "surrogate", kShipped, "").glued_error, 0.03);
+}
+
+/// The suction over the modulus changes with the modulus, and so does what it changes of the force.
+TEST_F(ServeNeedle, AHeldCellThatChangesStaysHeld) {
+  Scene held = heldMouse();
+  CellModelConfig config;
+  config.families = kShipped;
+  ChosenCellModel served = makeCellModel(held, "surrogate", config, "a.yaml");
+  ASSERT_TRUE(served.change);
+  served.change->change({{"young_modulus", 9e3}});
+  held.cell.material().young_modulus = 9e3;
+  const ChosenCellModel other = makeCellModel(held, "surrogate", config, "a.yaml");
+  const double force = forceOf(*other.cell, held);
+  EXPECT_NEAR(forceOf(*served.cell, held), force, 1e-3 * force);
+  EXPECT_THROW(served.change->change({{"young_modulus", 3e3}}), ConfigError);  // too soft for its suction
 }
 
 TEST_F(ServeNeedle, AnUnpreparedRoundedTipIsLiveWithAWarning) {

@@ -1,0 +1,47 @@
+#include "cell/family/tongue_family.h"
+
+#include <stdexcept>
+#include <utility>
+
+#include "base/errors.h"
+#include "cell/family/family_file.h"
+#include "cell/family/tongue_member.h"
+
+namespace microinjection {
+
+TongueFamily::TongueFamily(MouthFamilyData data) : data_(std::move(data)) {
+  if (data_.family().kind() != MouthFamily::Kind::kTongue)
+    throw std::invalid_argument("family " + data_.family().name() + " has no tongues");
+  for (const MouthMember& member : data_.members()) {
+    if (member.curves.rows() != TongueCurves::kNodes || member.curves.cols() != TongueCurves::kColumns)
+      throw ConfigError("family " + data_.family().name() + ": its data have other curves than tongues");
+  }
+}
+
+TongueFamily TongueFamily::load(const std::string& family_file) {
+  if (MouthFamily::kindOf(family_file) != MouthFamily::Kind::kTongue)
+    throw ConfigError(family_file + ": is no family of tongues: its key `tongue` is missing");
+  return TongueFamily(MouthFamilyData::loadBoth(family_file));
+}
+
+FamilyTongue TongueFamily::tongue(const Eigen::VectorXd& coordinates) const {
+  const MouthFamilyData::Prediction found = data_.predict(coordinates);
+  return {touchOf(data_.family().member(coordinates)), found.curves, found.error[0], found.error[1]};
+}
+
+FamilyTongue TongueFamily::tongue(const Scene& scene) const { return tongue(data_.coordinatesOf(scene)); }
+
+std::optional<FamilyTongue> findFamilyTongue(const std::string& families, const Scene& scene, std::string& reason) {
+  reason.clear();
+  for (const std::string& file : familyFiles(families + "/tongues")) {
+    try {
+      return TongueFamily::load(file).tongue(scene);
+    } catch (const ConfigError& error) {
+      reason += (reason.empty() ? "" : "; ") + std::string(error.what());
+    }
+  }
+  if (reason.empty()) reason = families + "/tongues has no family";
+  return std::nullopt;
+}
+
+}  // namespace microinjection
