@@ -10,11 +10,15 @@ One table, a row a case; a study is what its cases ask:
   second solver  tongue of six cells by this project and by GetFEM, each with its own error
   needle         force on a needle of a held cell, over that of the cell glued to a ring of the seal's radius
   modulus        found from six tongues with the noise of an image, of random cells
+  joined         found from six tongues, from a needle's force with the noise of a sensor, and from both
+  breaks         random cells whose membrane the controller draws into the needle until it breaks: which breaks it tells, how
+                 soon the suction ends, and how much was drawn in too much; by force, by images of the interface and by both
   families       random cells that no family has solved: tongues and surfaces of the family and solved, and the needle's force
                  on held cells as it is served and solved
 """
 import argparse
 import csv
+import dataclasses
 import importlib.util
 import statistics
 import subprocess
@@ -25,11 +29,12 @@ from pathlib import Path
 
 import numpy
 
-from cell_microinjection import Cell, ConfigError, Scene, aspirate, identify_tongue, indent, tongue_family
+from cell_microinjection import Cell, ConfigError, Scene, _core, aspirate, combine_moduli, identify, identify_tongue, indent, tongue_family
 
 PEER = Path(__file__).resolve().parent / 'peers' / 'getfem_held_cell.py'
 LINES = ('study', 'case', 'value', 'error', 'other', 'other error', 'unit', 's')
 MODULUS = 5e3   # Pa
+GLUED = 1.06    # by how much a held cell's force may differ from a glued one's
 PEER_SIZE = 1.4  # of the second solver's coarsest mesh: it has a quarter of the lip's edge there at 1
 # Radii of cell, bore, pipette and lip's edge, um; Poisson's ratio; suctions over the modulus.
 CELLS = ((40, 12, 32, 2, 0.49, (0.01, 0.05, 0.1, 0.2)), (40, 12, 32, 4, 0.49, (0.01, 0.05, 0.1, 0.2)), (40, 20, 45, 3, 0.49, (0.01, 0.05, 0.1)),
@@ -116,6 +121,58 @@ def modulus(count, noise, seed):
         yield 'modulus', f'cell {number + 1}', found.value if found else numpy.nan, half, true, 0, 'Pa', time.perf_counter() - begin
 
 
+def joined(count, noise, seed):
+    """Of random cells that suction holds: the modulus from tongues, from a needle's force, and from both. The force is that of the
+    held cell, solved, with the noise of a sensor; `identify` takes the cell as glued."""
+    random = numpy.random.default_rng(seed + 1000)
+    errors = {'tongues': [], 'force': [], 'both': []}
+    for number in range(1, count + 1):
+        begin = time.perf_counter()
+        radius = random.uniform(30, 70)
+        inner, edge, true = radius * random.uniform(0.25, 0.35), radius * random.uniform(0.05, 0.08), log_uniform(random, 2e3, 2e4)
+        strongest = -true * random.uniform(0.05, 0.15)
+        scene = held_scene(radius, inner, inner + 4 * edge, edge, 0.49, true, pressure=strongest / 2).replace({'needle/tip/radius': 1e-6 * radius * 0.1})
+        pressures = strongest * numpy.linspace(1 / 6, 1, 6)
+        told = scene.replace({'cell/material/young_modulus': 5e3})
+        drawn, depths = aspirate(scene, pressures), 0.02e-6 * radius * numpy.arange(1, 13)
+        solved = indent(scene, depths, tolerance=0.02)
+        good = solved['converged']
+        if good.sum() < 6 or not drawn['converged'].all():
+            print(f'suction: cell {number}: no solution', file=sys.stderr)
+            continue
+        tongue = identify_tongue(pressures, drawn['tongue_length'] + random.uniform(-2e-6, 2e-6) + random.normal(0, noise, 6), told)
+        height = numpy.concatenate([numpy.linspace(-8e-6, 0, 800), numpy.linspace(0, depths[good][-1], 800)])
+        force = numpy.interp(height, numpy.concatenate([[-1, 0], depths[good]]), numpy.concatenate([[0, 0], solved['force'][good, 2]]))
+        glued = {key: value for key, value in told.to_dict().items() if key != 'holding_pipette'}
+        touch = 1e-6 * (inner + edge) * radius / (radius + edge)  # where a sphere meets the lip
+        curve = identify({'time_s': numpy.arange(len(height)) * 1e-3, 'depth_um': 1e6 * height, 'force_nN': 1e9 * (force + random.normal(0, 10e-9, len(height)))},
+                         Scene({**glued, 'holding_pipette': {'contact_radius': touch}}))
+        wide = curve['young_modulus']
+        curve.estimates['young_modulus'] = dataclasses.replace(wide, low=wide.low / GLUED, high=wide.high * GLUED)
+        both = combine_moduli(curve, tongue)
+        for name, found in (('tongues', tongue), ('force', curve), ('both', both)):
+            modulus = found['young_modulus']
+            errors[name].append(abs(modulus.value / true - 1))
+            yield (f'modulus by {name}', f'cell {number}', modulus.value, (modulus.high - modulus.low) / 2, true, 0, 'Pa', time.perf_counter() - begin)
+
+
+def breaks(count):
+    """Random cells whose membrane the controller breaks by suction, told by each witness and by both."""
+    for witnesses in ('both', 'force', 'image'):
+        begin = time.perf_counter()
+        trials = [_core.suction_trial(seed, witnesses=witnesses) for seed in range(count)]
+        took = (time.perf_counter() - begin) / count
+        broken = [trial for trial in trials if trial['broken_by_suction']]
+        told = sum(trial['detected'] for trial in broken)
+        false = sum(trial['detected'] and not trial['broken'] for trial in trials)
+        latency = [1e3 * trial['latency_s'] for trial in broken]
+        print(f'suction: breaks told by {witnesses}: {told} of {len(broken)}; {false} of {count} cells taken for broken that are not; the suction '
+              f'ends {statistics.median(latency):.3g} ms after the break (median), {numpy.quantile(latency, 0.99):.3g} (99 of 100), {max(latency):.3g} (worst)')
+        for seed, trial in enumerate(trials):
+            drawn = 1e15 * trial['drawn_too_much_m3'] if trial['broken_by_suction'] else numpy.nan
+            yield f'drawn too much, told by {witnesses}', f'cell {seed}', drawn, numpy.nan, numpy.nan, numpy.nan, 'pL', took
+
+
 def log_uniform(random, low, high):
     return float(numpy.exp(random.uniform(numpy.log(low), numpy.log(high))))
 
@@ -196,6 +253,9 @@ def families(count, seed):
 
 def summary(study, rows):
     """One line on the rows of a study."""
+    if study.startswith('drawn'):
+        volumes = [row[2] for row in rows if numpy.isfinite(row[2])]
+        return f'{study}: {len(volumes)} breaks, {statistics.median(volumes):.2g} pL (median), {max(volumes):.2g} (worst)'
     if study.endswith('surfaces'):
         distances = [row[2] for row in rows]
         return f'{study}: {len(rows)} cases, apart by {statistics.median(distances):.2g} diameters (median), {max(distances):.2g} (worst)'
@@ -210,11 +270,12 @@ def summary(study, rows):
 
 
 def parse_arguments():
-    studies = 'half-space,second solver,needle,modulus,families'
+    studies = 'half-space,second solver,needle,modulus,joined,breaks,families'
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('--out', type=Path, required=True, help='folder of suction.csv')
     parser.add_argument('--studies', default=studies, help='default %(default)s')
     parser.add_argument('--cells', type=int, default=30, help='whose modulus is found, and of each family (default %(default)s)')
+    parser.add_argument('--trials', type=int, default=400, help='cells whose membrane suction breaks (default %(default)s)')
     parser.add_argument('--noise', type=float, default=0.1e-6, help='m, of a tongue in an image (default %(default)s)')
     parser.add_argument('--seed', type=int, default=1, help='of these cells (default %(default)s)')
     arguments = parser.parse_args()
@@ -229,6 +290,8 @@ def main():
     arguments = parse_arguments()
     studies = {'half-space': half_space, 'second solver': second_solver, 'needle': needle,
                'modulus': lambda: modulus(arguments.cells, arguments.noise, arguments.seed),
+               'joined': lambda: joined(arguments.cells, arguments.noise, arguments.seed),
+               'breaks': lambda: breaks(arguments.trials),
                'families': lambda: families(arguments.cells, arguments.seed)}
     lines = []
     with (arguments.out / 'suction.csv').open('w', encoding='utf-8', newline='') as file:

@@ -11,16 +11,14 @@
 #include "cell/choice/model_choice.h"
 #include "cell/family/family_cell.h"
 #include "cell/family/held_force_family.h"
+#include "cell/family/tongue_family.h"
+#include "cell/model/bore_tongue.h"
 #include "cell/model/live_cell.h"
 #include "cell/model/puncturable_cell.h"
 #include "cell/surrogate/surrogate_cell_model.h"
 
 namespace microinjection {
 namespace {
-
-/// Largest relative difference of the needle's force between a held cell and the glued one, of one homogeneous cell in
-/// 20 cases: ./dev bench suction. Where no family of held forces has the cell.
-constexpr double kGluedError = 0.06;
 
 /// Why a scene's own surrogate data cannot be used, and what to do; `call` prepares them.
 std::string missingReason(const CacheRead<SurrogateData>& read, const std::string& call) {
@@ -90,6 +88,26 @@ ServingPlan planBetween(const Scene& scene, const std::string& model, const std:
   return plan;
 }
 
+/// What the scene's needle draws in, by the family of tongues that has it; else it is solved, which takes seconds.
+std::optional<BoreTongue> tongueOf(const Scene& scene, const std::string& families) {
+  constexpr int kPoints = 20;
+  if (!scene.needle.bore_radius) return std::nullopt;
+  const Scene mouth = boreMouth(scene);
+  std::string refusal;
+  const std::optional<FamilyTongue> family = findFamilyTongue(families, mouth, refusal);
+  if (!family) return solveBoreTongue(scene);
+  const double scale = mouth.radius() / *scene.needle.bore_radius;
+  const DrawnTongue rest = family->at(0);
+  std::vector<BoreTongue::Point> points;
+  for (int i = 0; i <= kPoints; ++i) {
+    const double suction = family->strongest() * i / kPoints;
+    const DrawnTongue tongue = family->at(suction);
+    points.push_back(
+        {suction, scale * (tongue.length - rest.length), scale * scale * scale * (tongue.volume - rest.volume)});
+  }
+  return BoreTongue(points);
+}
+
 /// What suction changes of the planned force: surrogate data for a needle on the axis are corrected, where a family of
 /// held forces has the cell.
 void tellOfSuction(const Scene& wanted, const std::string& families, ServingPlan& plan) {
@@ -108,7 +126,7 @@ void tellOfSuction(const Scene& wanted, const std::string& families, ServingPlan
     note << "on the axis its force is corrected by up to " << 100 * held->largestChange()
          << " % to that of the held cell, with an error of " << 100 * held->error() << " %";
   } else {
-    plan.glued_error = held ? held->largestChange() : kGluedError;
+    plan.glued_error = held ? held->largestChange() : Scene::kGluedError;
     note << "its force is up to " << 100 * plan.glued_error << " % from that of the held cell";
     if (!refusal.empty()) note << " (" << refusal << ')';
   }
@@ -165,7 +183,7 @@ ChosenCellModel makeCellModel(const Scene& wanted, const std::string& model, con
     chosen.unchangeable = "this one is solved live; " + chosen.unchangeable;
     tracker = std::make_unique<LiveCellModel>(cell, config.live);
   }
-  chosen.cell = std::make_unique<PuncturableCell>(scene, std::move(tracker));
+  chosen.cell = std::make_unique<PuncturableCell>(scene, std::move(tracker), tongueOf(scene, config.families));
   return chosen;
 }
 

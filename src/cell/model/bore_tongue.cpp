@@ -48,6 +48,7 @@ double BoreTongue::volume(double suction) const { return curves_->volume(std::mi
 
 Scene boreMouth(const Scene& scene) {
   if (!scene.needle.bore_radius) throw ConfigError("needle/bore_radius: is missing: nothing can be drawn in");
+  scene.requireContinuum("suction in the needle");
   const double bore = *scene.needle.bore_radius, wall = scene.needle.tip.radius - bore;
   Scene mouth = scene;
   mouth.cell.layers = {scene.cell.layers.back()};

@@ -141,7 +141,9 @@ struct Scene {
   /// without a mouth. Of a cell 80 um across in a bore of 24 um, the needle's force on the axis then is up to 6 % from
   /// that of the held cell (doc/reference/benchmarks.md, Suction); HeldForce knows the ratio of others.
   Scene glued() const;
-  static constexpr double kGluedError = 0.06;  ///< relative, largest, of the needle's force on glued()
+  /// Largest relative difference of the needle's force between the two, of one homogeneous cell in 20 cases:
+  /// ./dev bench suction.
+  static constexpr double kGluedError = 0.06;
 };
 
 /// disc (flat, with a sharp edge), hemisphere, rounded_flat.

@@ -2,7 +2,10 @@
 
 #include <pybind11/stl.h>
 
+#include <tuple>
+
 #include "base/errors.h"
+#include "cell/identification/combined_modulus.h"
 #include "cell/identification/family_law.h"
 #include "cell/identification/formula_law.h"
 #include "cell/identification/identification.h"
@@ -120,12 +123,27 @@ py::dict identifyTongues(const py::object& pressures, const py::object& lengths,
   return toDict(found);
 }
 
+Identification withModulus(const std::tuple<double, double, double, bool>& told) {
+  const auto [value, low, high, bounded] = told;
+  if (!(low > 0 && low < value && value < high)) throw ConfigError("young_modulus: must lie within its interval, above 0");
+  Identification found;
+  found.estimates = {{"young_modulus", "Pa", value, low, high, bounded}};
+  return found;
+}
+
 }  // namespace
 
 void bindIdentify(py::module_& module) {
   module.def("identify_record", &identifyRecord, py::arg("path"), py::arg("scene"), py::arg("model"), py::arg("free"),
              py::arg("tip_radius"), py::arg("drift"), py::arg("prony_terms"), py::arg("intervals"), py::arg("columns"),
              py::arg("spring_constant"), py::arg("segment"), py::arg("whole"), py::arg("families"));
+  using Modulus = std::tuple<double, double, double, bool>;
+  module.def(
+      "combine_moduli",
+      [](const Modulus& force, const Modulus& tongue) {
+        return toDict(combineModuli(withModulus(force), withModulus(tongue)));
+      },
+      py::arg("force"), py::arg("tongue"));
   module.def("identify_tongue", &identifyTongues, py::arg("pressure"), py::arg("length"), py::arg("scene"));
 }
 

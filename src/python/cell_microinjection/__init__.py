@@ -21,7 +21,7 @@ from cell_microinjection import _core
 from cell_microinjection._core import Calibration, ConfigError, FamilyTongue, Vision, WriteError, aspirate, indent, package_folder
 
 __all__ = ['Calibration', 'Cell', 'ConfigError', 'Estimate', 'Identification', 'Measurement', 'Scene', 'Vision', 'WriteError',
-           'aspirate', 'find_tip', 'identify', 'identify_tongue', 'indent', 'load_record', 'measure_cell', 'package_folder', 'render_specimen', 'tongue_family']
+           'aspirate', 'combine_moduli', 'find_tip', 'identify', 'identify_tongue', 'indent', 'load_record', 'measure_cell', 'package_folder', 'render_specimen', 'tongue_family']
 __version__ = _core.__version__
 
 
@@ -169,6 +169,17 @@ def tongue_family(scene, families=None):
     @raises ConfigError that names what is outside of the families, its value and what is allowed
     """
     return FamilyTongue(scene if isinstance(scene, _core.Scene) else Scene.load(scene), families)
+
+
+def combine_moduli(force, tongue):
+    """Joins the moduli that a force curve and the tongues of one cell tell, with the weights of their intervals.
+
+    force, tongue: the Identifications of identify() and identify_tongue().
+    @returns an Identification; it is not `consistent` when the two are of different cells
+    """
+    found = _core.combine_moduli(*((each.value, each.low, each.high, each.bounded) for each in (force['young_modulus'], tongue['young_modulus'])))
+    found['estimates'] = {name: Estimate(**each) for name, each in found['estimates'].items()}
+    return Identification(**found, notes=[*force.notes, *tongue.notes], position=numpy.empty(0), force=numpy.empty(0))
 
 
 def _write_table(path, record):

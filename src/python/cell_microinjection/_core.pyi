@@ -81,6 +81,13 @@ class FamilyTongue:
     def equilibrium_ends(self) -> bool: ...  # there; else the solution does
 
 
+# Of each (value, low, high, bounded) of the modulus.
+def combine_moduli(force: tuple[float, float, float, bool], tongue: tuple[float, float, float, bool]) -> dict[str, Any]: ...
+
+
+def suction_trial(seed: int, *, witnesses: str = ...) -> dict[str, Any]: ...
+
+
 def identify_tongue(pressure: ArrayLike, length: ArrayLike, scene: Scene) -> dict[str, Any]: ...
 
 
