@@ -5,7 +5,7 @@
 #include "benchmark/common/vision_real.h"
 #include "vision/calibration/statistics.h"
 #include "vision/calibration/tip_focus.h"
-#include "vision/measurement/core_sharpness.h"
+#include "vision/measurement/sharpness.h"
 
 namespace microinjection {
 namespace {

@@ -1,9 +1,5 @@
 #include "nodes/cell_simulator_node.h"
 
-#include <string>
-#include <utility>
-
-#include "base/errors.h"
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/node_parameters.h"
 

@@ -13,7 +13,6 @@
 #include "base/atomic_file.h"
 #include "base/worker_processes.h"
 #include "cell_microinjection/OperatingState.h"
-#include "nodes/recording/local_time.h"
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/node_parameters.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cell/family/family_member.h"
-#include "cell/surrogate/axis_ray.h"
+#include "cell/surrogate/training_ray.h"
 
 namespace microinjection {
 namespace {

@@ -1,7 +1,9 @@
 #include "cell/surrogate/training_ray.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <stdexcept>
 
@@ -38,6 +40,46 @@ std::string mismatch(const TrainingResult& result, const TrainingRay& ray) {
     if (sample.surface.size() != expected) return "its surface is of another grid";
   }
   return "";
+}
+
+constexpr double kLevels[] = {-1, 0, 1};
+
+/// Displacement (m; away from the axis, along it) of the section's outline as a function of the
+/// angle (rad) from the pole.
+using Outline = std::map<double, Eigen::Vector2d>;
+
+Outline outline(const CellProblem<2>& problem) {
+  Outline result;
+  const QuadraticMesh<2>& mesh = problem.body().mesh();
+  for (const auto& facet : mesh.facets) {
+    if (facet.layer != 0) continue;
+    for (int node : facet.nodes) {
+      result[std::atan2(mesh.nodes[node][0], mesh.nodes[node][1])] = problem.state().segment<2>(2 * node);
+    }
+  }
+  return result;
+}
+
+Eigen::Vector2d interpolate(const Outline& outline, double angle) {
+  const auto next = outline.upper_bound(angle);
+  if (next == outline.begin()) return next->second;
+  const auto last = std::prev(next);
+  if (next == outline.end()) return last->second;
+  const double share = (angle - last->first) / (next->first - last->first);
+  return (1 - share) * last->second + share * next->second;
+}
+
+Eigen::VectorXf turned(const Outline& outline, const Eigen::VectorXd& surface) {
+  Eigen::VectorXf result(surface.size());
+  for (Eigen::Index i = 0; i + 2 < surface.size(); i += 3) {
+    const Eigen::Vector3d x = surface.segment<3>(i);
+    const double away = x.head<2>().norm();
+    const Eigen::Vector2d moved = interpolate(outline, std::atan2(away, x.z()));
+    const Eigen::Vector2d side = away > 0 ? Eigen::Vector2d(moved[0] / away * x.head<2>()) : Eigen::Vector2d::Zero();
+    result.segment<3>(i) =
+        Eigen::Vector3f(static_cast<float>(side.x()), static_cast<float>(side.y()), static_cast<float>(moved[1]));
+  }
+  return result;
 }
 
 }  // namespace
@@ -109,6 +151,25 @@ CacheRead<TrainingResult> loadTraining(const std::string& path, const std::strin
   } catch (const std::runtime_error& error) {
     return damagedCache<TrainingResult>(path, error.what());
   }
+}
+
+std::vector<TrainingSample> solveAxis(const Scene& scene, const std::vector<double>& depths) {
+  Scene axial = SurrogatePlan::elastic(scene);
+  axial.needle.offset.setZero();
+  const Eigen::VectorXd surface = SurfaceGrid::standard().nodes(scene.radius(), 0);
+  std::vector<TrainingSample> samples;
+  for (const double level : kLevels) {
+    CellProblem<2> problem(axial, makeSceneMesh<2>(axial, level), ElementKind::kP2P0);
+    for (std::size_t i = 0; i < depths.size(); ++i) {
+      const IndentationSolution solution = problem.solve(-depths[i] * Eigen::Vector3d::UnitZ());
+      if (!solution.converged) break;
+      if (i == samples.size()) samples.emplace_back();
+      samples[i].displacement = solution.tip_displacement;
+      samples[i].force = solution.force;
+      samples[i].surface = turned(outline(problem), surface);
+    }
+  }
+  return samples;
 }
 
 }  // namespace microinjection

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/cache_file.h"
+#include "cell/model/scene.h"
 #include "cell/surrogate/surrogate_plan.h"
 
 namespace microinjection {
@@ -32,5 +33,10 @@ TrainingResult decodeTraining(const std::string& bytes);
 /// The stored result of `ray`. The state is kDamaged, too, when it belongs to another ray, or when
 /// its surfaces are not of SurfaceGrid.
 CacheRead<TrainingResult> loadTraining(const std::string& path, const std::string& description, const TrainingRay& ray);
+
+/// Converged equilibria of the cell's section for a tip that moves down on the axis to `depths` (m,
+/// ascending). They go deeper than in space, where the cell can buckle sideways. Each depth has the
+/// result of the finest mesh that reaches it; depths that no mesh reaches are left out.
+std::vector<TrainingSample> solveAxis(const Scene& scene, const std::vector<double>& depths);
 
 }  // namespace microinjection

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "cell/surrogate/axis_ray.h"
 #include "cell/surrogate/mesh_correction.h"
 
 namespace microinjection {
