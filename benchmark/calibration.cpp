@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "benchmark/bench_main.h"
+#include "benchmark/common/simulated_needle.h"
 #include "vision/calibration/calibrate.h"
 #include "vision/calibration/calibration_pattern.h"
-#include "vision/calibration/simulated_needle.h"
 
 namespace microinjection {
 namespace {

@@ -13,7 +13,7 @@ import rospy
 from geometry_msgs.msg import PoseStamped, WrenchStamped
 
 TOOLS = Path(__file__).resolve().parents[1] / 'src/tools'
-RESIDUALS = Path(__file__).resolve().parents[1] / 'src/commands/identify_report.cpp'
+RESIDUALS = Path(__file__).resolve().parents[1] / 'src/commands/identify.cpp'
 SPEED = 20e-6  # m/s
 TILT = 0.3  # rad, of the needle about y
 

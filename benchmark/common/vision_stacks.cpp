@@ -1,11 +1,11 @@
 #include <cmath>
 #include <map>
 
+#include "benchmark/common/tip_sharpness.h"
 #include "benchmark/common/vision_real.h"
 #include "vision/calibration/statistics.h"
 #include "vision/calibration/tip_focus.h"
-#include "vision/measurement/core_sharpness.h"
-#include "vision/pipette/tip_sharpness.h"
+#include "vision/measurement/sharpness.h"
 
 namespace microinjection {
 namespace {

@@ -11,8 +11,8 @@
 #include "benchmark/common/call_times.h"
 #include "benchmark/common/forked_case.h"
 #include "benchmark/common/paper_mesh.h"
-#include "cell/mechanics/element_frequency.h"
 #include "cell/mechanics/explicit_step.h"
+#include "cell/mechanics/largest_frequency.h"
 
 namespace microinjection {
 namespace {

@@ -1,15 +1,13 @@
 #include "base/config_reader.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <sstream>
 
-#include "base/absolute_path.h"
 #include "base/errors.h"
+#include "base/paths.h"
 
 namespace microinjection {
 

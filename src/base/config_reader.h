@@ -3,9 +3,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <Eigen/Core>
-#include <functional>
 #include <memory>
-#include <set>
 #include <string>
 #include <vector>
 

@@ -1,6 +1,5 @@
 #include "commands/axis_store.h"
 
-#include <cmath>
 #include <stdexcept>
 
 #include "base/atomic_file.h"

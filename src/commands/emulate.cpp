@@ -10,14 +10,12 @@
 #include <csignal>
 #include <cstdio>
 #include <fstream>
-#include <iostream>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/command_line.h"
 #include "base/errors.h"
-#include "base/exit_status.h"
 #include "base/standard_output.h"
 #include "hardware/devices/driver_registry.h"
 #include "hardware/serial/emulator_host.h"

@@ -8,8 +8,6 @@
 #include <vector>
 
 #include "base/command_line.h"
-#include "base/errors.h"
-#include "base/exit_status.h"
 #include "base/standard_output.h"
 #include "cell/model/scene.h"
 #include "commands/indent_arguments.h"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <boost/program_options.hpp>
-#include <cmath>
 
 #include "base/command_line.h"
 #include "base/config_errors.h"

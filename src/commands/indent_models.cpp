@@ -1,11 +1,9 @@
 #include "commands/indent_models.h"
 
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <memory>
-#include <string>
 
 #include "cell/model/biomembrane.h"
 #include "cell/model/indentation.h"

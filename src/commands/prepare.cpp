@@ -1,18 +1,15 @@
 // Prepares the surrogate cell of a scene from converged solutions; see --help.
 
-#include <boost/program_options/errors.hpp>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <iostream>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/atomic_file.h"
-#include "base/cache_file.h"
+#include "base/command_line.h"
 #include "base/errors.h"
-#include "base/exit_status.h"
 #include "base/standard_output.h"
 #include "base/worker_processes.h"
 #include "cell/choice/model_choice.h"
@@ -27,7 +24,6 @@
 #include "commands/prepare_family.h"
 #include "commands/prepare_mouth_family.h"
 #include "commands/run_tasks.h"
-#include "commands/worker.h"
 
 namespace microinjection {
 namespace {
@@ -194,30 +190,19 @@ int prepare(const PrepareArguments& arguments) {
 }
 
 int run(int argc, char** argv) {
-  try {
-    const PrepareArguments arguments = parsePrepareArguments(argc, argv);
-    if (arguments.show_help) {
-      std::cout << arguments.help;
-      flushStandardOutput();
-      return kDone;
-    }
-    const bool worker = arguments.ray >= 0 || arguments.axis >= 0 || arguments.task >= 0 || !arguments.at.empty();
-    const int status = worker ? work(arguments) : prepare(arguments);
-    flushStandardOutput();
-    return status;
-  } catch (const boost::program_options::error& error) {
-    std::cerr << "prepare: " << error.what() << "; see --help\n";
-    return kBadUsage;
-  } catch (const UserError& error) {
-    std::cerr << "prepare: " << error.what() << '\n';
-    return kBadUsage;
-  } catch (const std::exception& error) {
-    std::cerr << "prepare: " << error.what() << '\n';
-    return kFailed;
-  }
+  const std::optional<PrepareArguments> arguments = parsePrepareArguments(argc, argv);
+  if (!arguments) return kDone;  // the help
+  const bool worker = arguments->ray >= 0 || arguments->axis >= 0 || arguments->task >= 0 || !arguments->at.empty();
+  const int status = worker ? work(*arguments) : prepare(*arguments);
+  flushStandardOutput();
+  return status;
 }
 
 }  // namespace
 }  // namespace microinjection
 
-int main(int argc, char** argv) { return microinjection::run(argc, argv); }
+int main(int argc, char** argv) {
+  using namespace microinjection;
+  return runProgram(
+      "prepare", [&] { return run(argc, argv); }, kFailed);
+}

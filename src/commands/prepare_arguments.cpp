@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <boost/program_options.hpp>
-#include <sstream>
 #include <thread>
 
+#include "base/command_line.h"
 #include "base/errors.h"
 #include "base/output_files.h"
 
@@ -60,11 +60,11 @@ void requirePlan(const PrepareArguments& arguments, bool task) {
 
 }  // namespace
 
-PrepareArguments parsePrepareArguments(int argc, char** argv) {
+std::optional<PrepareArguments> parsePrepareArguments(int argc, char** argv) {
   namespace po = boost::program_options;
   PrepareArguments arguments;
   const int processors = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  po::options_description visible, all;
+  po::options_description visible;
   FamilyArguments& family = arguments.family;
   visible.add_options()("help", "this text")("scene", po::value(&arguments.scene), "scene file (YAML, SI units)")(
       "families", po::value(&arguments.families),
@@ -93,15 +93,8 @@ PrepareArguments parsePrepareArguments(int argc, char** argv) {
       "at", po::value(&arguments.at), "of the family's member at these coordinates")(
       "member", po::value(&arguments.member), "of this member of the check")(
       "axis", po::value(&arguments.axis), "solves only this node of the family's grid on the axis");
-  all.add(visible).add(hidden);
   po::variables_map values;
-  po::store(po::command_line_parser(argc, argv).options(all).positional({}).run(), values);
-  po::notify(values);
-  std::ostringstream help;
-  help << kHelp << visible;
-  arguments.help = help.str();
-  arguments.show_help = values.count("help") != 0;
-  if (arguments.show_help) return arguments;
+  if (!readCommandLine(wordsOf(argc, argv), visible, kHelp, values, "", 1, hidden)) return std::nullopt;
   if (arguments.scene.empty() == family.file.empty()) throw ConfigError("one of --scene and --family must be given");
   requirePlan(arguments, values.count("task") != 0);
   family.members_given = !values["members"].defaulted();

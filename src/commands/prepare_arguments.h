@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "commands/prepare_family.h"
@@ -20,11 +21,9 @@ struct PrepareArguments {
   int count = 1;
   bool gather = false;
   bool again = false;
-  bool show_help = false;
-  std::string help;  ///< of the command, with its options
 };
 
-/// Throws ConfigError, or a boost::program_options error, that names the option.
-PrepareArguments parsePrepareArguments(int argc, char** argv);
+/// Nothing after printing the help. Throws ConfigError that names the option.
+std::optional<PrepareArguments> parsePrepareArguments(int argc, char** argv);
 
 }  // namespace microinjection

@@ -1,6 +1,10 @@
 #include "commands/run_tasks.h"
 
+#include <malloc.h>
+#include <sys/prctl.h>
+
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <stdexcept>
 #include <thread>
@@ -8,6 +12,7 @@
 #include "base/errors.h"
 #include "base/exit_status.h"
 #include "base/worker_processes.h"
+#include "cell/mechanics/symmetric_solver.h"
 
 namespace microinjection {
 namespace {
@@ -70,6 +75,14 @@ void runTasks(const std::string& title, const std::string& unit, int jobs,
     }
     if (busy == commands.size()) std::this_thread::sleep_for(kWait);
   }
+}
+
+void prepareWorker(bool ends_with_parent) {
+  if (ends_with_parent) prctl(PR_SET_PDEATHSIG, SIGKILL);
+  // The solver allocates and releases large blocks in every step: the system need not have them back.
+  mallopt(M_TRIM_THRESHOLD, 1 << 30);
+  mallopt(M_MMAP_THRESHOLD, 1 << 30);
+  SymmetricSolver::useOneThread();  // pieces are solved side by side; more threads only wait for each other
 }
 
 }  // namespace microinjection

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <string>
 
 #include "cell/identification/table_law.h"
 #include "cell/model/scene.h"

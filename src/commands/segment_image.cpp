@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <exception>
-#include <iostream>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
@@ -12,7 +10,6 @@
 #include "base/command_line.h"
 #include "base/cpu_time.h"
 #include "base/errors.h"
-#include "base/exit_status.h"
 #include "base/output_files.h"
 #include "vision/camera/grey_image.h"
 #include "vision/camera/image_file.h"

@@ -2,14 +2,13 @@
 
 #include <filesystem>
 #include <limits>
-#include <sstream>
 #include <vector>
 
-#include "base/absolute_path.h"
 #include "base/cache_file.h"
 #include "base/config_reader.h"
 #include "base/csv_field.h"
 #include "base/errors.h"
+#include "base/paths.h"
 #include "cell/sweep/scene_variation.h"
 
 namespace microinjection {

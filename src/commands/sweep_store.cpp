@@ -1,6 +1,5 @@
 #include "commands/sweep_store.h"
 
-#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <limits>
@@ -9,7 +8,6 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "base/atomic_file.h"
 #include "base/errors.h"
 #include "commands/indent_models.h"
 

@@ -7,7 +7,7 @@
 
 #include "base/errors.h"
 #include "nodes/imaging/calibration_messages.h"
-#include "nodes/imaging/image_size.h"
+#include "nodes/imaging/image_input.h"
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/node_parameters.h"

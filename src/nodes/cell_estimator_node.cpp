@@ -11,6 +11,7 @@
 #include "nodes/cell/estimate_messages.h"
 #include "nodes/display/cell_state_reader.h"
 #include "nodes/runtime/conversions.h"
+#include "nodes/runtime/node_parameters.h"
 
 namespace microinjection {
 namespace {
@@ -23,6 +24,33 @@ constexpr double kApart = 0.3e-6;   ///< m, of the needle between the times of p
 bool isModulus(const std::string& name) { return name == "young_modulus" || name == "core_modulus"; }
 
 }  // namespace
+
+CellEstimatorParameters CellEstimatorParameters::read(const Bus& bus) {
+  CellEstimatorParameters parameters;
+  ConfigReader reader = parameterReader(bus);
+  reader.path("scene", parameters.scene, ConfigReader::kRequired);
+  reader.path("families", parameters.families, ConfigReader::kRequired);
+  reader.number("rate", parameters.rate, Range::closed(50, 5000));
+  reader.number("update_period", parameters.update_period, Range::closed(0.005, 1));
+  reader.number("needle_timeout", parameters.needle_timeout, Range::positive());
+  reader.number("force_timeout", parameters.force_timeout, Range::positive());
+  reader.number("controller_timeout", parameters.controller_timeout, Range::positive());
+  reader.number("largest_tilt", parameters.largest_tilt, Range::closed(0, 0.2));
+  reader.number("largest_speed", parameters.largest_speed, Range::positive());
+  reader.number("largest_force", parameters.largest_force, Range::positive());
+  reader.number("largest_sideways", parameters.largest_sideways, Range::positive());
+  reader.number("clear_distance", parameters.clear_distance, Range::positive());
+  reader.boolean("serve", parameters.serve);
+  parameters.served.read(reader);
+  reader.number("puncture_deviation", parameters.puncture_deviation, Range::closed(0, 2));
+  ConfigReader image = reader.section("image");
+  image.boolean("use", parameters.images);
+  parameters.image.read(image);
+  ConfigReader estimator = reader.section("estimator");
+  parameters.estimator.read(estimator);
+  reader.finish();
+  return parameters;
+}
 
 const char* const CellEstimatorNode::kHelp =
     "cell_estimator: the cell estimator. Finds modulus and height of the cell under the needle and has cell_simulator\n"
@@ -56,9 +84,7 @@ CellEstimatorNode::CellEstimatorNode(Bus& bus)
   }
   if (parameters_.images) dimples_ = std::make_unique<DimpleReader>(bus, parameters_.image);
   take(scene, std::move(*member));
-  cell_ = subscribeGuarded<cell_microinjection::CellState>(
-      bus, "cell/state", 1,
-      [this](const cell_microinjection::CellState& message, const std::string&) { onCell(message); });
+  cell_ = subscribeGuarded(bus, "cell/state", 1, &CellEstimatorNode::onCell, this);
   force_.onMessage([this](const geometry_msgs::WrenchStamped& message, const ros::Time&) { followForce(message); });
   cycle_.diagnostics().add("cell under the needle", [this](auto& status) { report(status); });
   cycle_.onStep([this](const Cycle::Tick& tick) { step(tick); });

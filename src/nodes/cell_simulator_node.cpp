@@ -1,10 +1,7 @@
 #include "nodes/cell_simulator_node.h"
 
 #include <cmath>
-#include <string>
-#include <utility>
 
-#include "base/errors.h"
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/node_parameters.h"
 

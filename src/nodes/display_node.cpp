@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "nodes/display/cell_state_reader.h"
 #include "nodes/runtime/conversions.h"
@@ -94,8 +92,7 @@ DisplayNode::DisplayNode(Bus& bus)
   state_.colour = *surfaceQuantity(config_.colour);
   state_.section = config_.section;
   publishView();
-  const auto receiveView = [this](const auto& message, const std::string&) { onView(message); };
-  subscriptions_.push_back(subscribeGuarded<cell_microinjection::DisplayView>(bus, "viz/set_view", 1, receiveView));
+  subscriptions_.push_back(subscribeGuarded(bus, "viz/set_view", 1, &DisplayNode::onView, this));
   subscribe(kState, &DisplayNode::onState);
   subscribe(kMeasured, &DisplayNode::onMeasuredForce);
   subscribe(kHand, &DisplayNode::onHand);
@@ -110,8 +107,7 @@ DisplayNode::DisplayNode(Bus& bus)
 template <typename Message>
 void DisplayNode::subscribe(InputId input, void (DisplayNode::*handler)(const Message&)) {
   constexpr int kQueue = 1;  // only the latest message is drawn
-  const auto receive = [this, handler](const Message& message, const std::string&) { (this->*handler)(message); };
-  subscriptions_.push_back(subscribeGuarded<Message>(bus_, inputs_[input].topic, kQueue, receive));
+  subscriptions_.push_back(subscribeGuarded(bus_, inputs_[input].topic, kQueue, handler, this));
 }
 
 void DisplayNode::count(InputId input, bool drawn) {

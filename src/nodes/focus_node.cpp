@@ -6,8 +6,6 @@
 
 #include "base/errors.h"
 #include "nodes/imaging/image_input.h"
-#include "nodes/imaging/image_size.h"
-#include "nodes/imaging/image_topic.h"
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/node_parameters.h"
@@ -41,15 +39,9 @@ FocusNode::FocusNode(Bus& bus)
     : GoalNode(bus, "focus/find", "focus", kFocusPeriod),
       parameters_(Parameters::read(bus)),
       command_(bus.advertise<sensor_msgs::JointState>("/focus/move_jp", 1)),
-      vision_(subscribeMeasured<cell_microinjection::VisionState>(
-          bus, "vision/state", kFocusQueue,
-          [this](const cell_microinjection::VisionState& message, const std::string&) { onVision(message); })),
-      focus_state_(subscribeMeasured<sensor_msgs::JointState>(
-          bus, "/focus/measured_js", kFocusQueue,
-          [this](const sensor_msgs::JointState& message, const std::string&) { onFocus(message); })),
-      needle_state_(subscribeMeasured<geometry_msgs::PoseStamped>(
-          bus, "/needle/measured_cp", kFocusQueue,
-          [this](const geometry_msgs::PoseStamped& message, const std::string&) { onNeedle(message); })) {
+      vision_(subscribeMeasured(bus, "vision/state", kFocusQueue, &FocusNode::onVision, this)),
+      focus_state_(subscribeMeasured(bus, "/focus/measured_js", kFocusQueue, &FocusNode::onFocus, this)),
+      needle_state_(subscribeMeasured(bus, "/needle/measured_cp", kFocusQueue, &FocusNode::onNeedle, this)) {
   cv::setNumThreads(1);  // the other cores belong to the nodes at 1 kHz
 }
 

@@ -15,8 +15,8 @@
 #include "base/repetition.h"
 #include "nodes/bus/goal_node.h"
 #include "nodes/runtime/receipt.h"
-#include "vision/measurement/core_sharpness.h"
 #include "vision/measurement/focus_search.h"
+#include "vision/measurement/sharpness.h"
 
 namespace microinjection {
 

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "base/errors.h"
-#include "base/user_data.h"
+#include "base/paths.h"
 #include "nodes/runtime/background_writing.h"
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/force_liveness.h"

@@ -34,9 +34,8 @@ ImageRecorderNode::ImageRecorderNode(Bus& bus) : diagnostics_(bus) {
   reader.finish();
   requireWritableFolder(folder_);
   video_ = std::make_unique<VideoFile>(folder_ + "/overlay.avi", rate_);
-  states_ = subscribeGuarded<cell_microinjection::InjectionStatus>(
-      bus, "/controller/injection_state", kRecordedImagesQueue,
-      [this](const cell_microinjection::InjectionStatus& message, const std::string&) { onState(message); });
+  states_ =
+      subscribeGuarded(bus, "/controller/injection_state", kRecordedImagesQueue, &ImageRecorderNode::onState, this);
   images_ = subscribeImages(bus, kOverlayTopic, kRecordedImagesQueue,
                             [this](const sensor_msgs::Image& message) { onImage(message); });
   diagnostics_.add("recording", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {

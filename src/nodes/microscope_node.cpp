@@ -1,7 +1,6 @@
 #include "nodes/microscope_node.h"
 
 #include <algorithm>
-#include <cmath>
 #include <opencv2/core/utility.hpp>
 
 #include "nodes/display/cell_state_reader.h"
@@ -46,15 +45,10 @@ MicroscopeNode::MicroscopeNode(Bus& bus)
       diagnostics_(bus) {
   cv::setNumThreads(1);  // the other cores belong to the nodes at 1 kHz
   constexpr int kQueue = 1;
-  state_ = subscribeGuarded<cell_microinjection::CellState>(
-      bus, "/cell/state", kQueue,
-      [this](const cell_microinjection::CellState& message, const std::string&) { onState(message); });
-  needle_ = subscribeGuarded<geometry_msgs::PoseStamped>(
-      bus, parameters_.needle == "true" ? "/needle/true_cp" : "/needle/measured_cp", kQueue,
-      [this](const geometry_msgs::PoseStamped& message, const std::string&) { onNeedle(message); });
-  focus_command_ = subscribeGuarded<sensor_msgs::JointState>(
-      bus, "/focus/move_jp", kQueue,
-      [this](const sensor_msgs::JointState& message, const std::string&) { onFocus(message); }, StampRule::kCommand);
+  state_ = subscribeGuarded(bus, "/cell/state", kQueue, &MicroscopeNode::onState, this);
+  needle_ = subscribeGuarded(bus, parameters_.needle == "true" ? "/needle/true_cp" : "/needle/measured_cp", kQueue,
+                             &MicroscopeNode::onNeedle, this);
+  focus_command_ = subscribeGuarded(bus, "/focus/move_jp", kQueue, &MicroscopeNode::onFocus, this, StampRule::kCommand);
   diagnostics_.add("images", this, &MicroscopeNode::report);
   timer_ = bus.timer(1 / parameters_.rate, [this] { step(); });
 }

@@ -6,7 +6,7 @@
 
 #include "base/atomic_file.h"
 #include "nodes/display/cell_state_reader.h"
-#include "nodes/recording/local_time.h"
+#include "nodes/recording/session_files.h"
 #include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/node_parameters.h"
 

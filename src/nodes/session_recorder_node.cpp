@@ -14,7 +14,6 @@
 #include "base/worker_processes.h"
 #include "cell_microinjection/HolderState.h"
 #include "cell_microinjection/OperatingState.h"
-#include "nodes/recording/local_time.h"
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/node_parameters.h"
 

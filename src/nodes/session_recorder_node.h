@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "base/interval_histogram.h"
 #include "cell_microinjection/CellState.h"
 #include "cell_microinjection/CycleStatistics.h"
 #include "cell_microinjection/InjectionStatus.h"

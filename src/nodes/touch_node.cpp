@@ -34,12 +34,8 @@ TouchNode::TouchNode(Bus& bus)
       parameters_(Parameters::read(bus)),
       watch_(bus, parameters_.input_timeout),
       setpoints_(bus, watch_),
-      vision_(subscribeMeasured<cell_microinjection::VisionState>(
-          bus, "vision/state", 1,
-          [this](const cell_microinjection::VisionState& message, const std::string&) { onVision(message); })),
-      forces_(subscribeMeasured<geometry_msgs::WrenchStamped>(
-          bus, "/force_sensor/measured_cf", 1,
-          [this](const geometry_msgs::WrenchStamped& message, const std::string&) { onForce(message); })) {}
+      vision_(subscribeMeasured(bus, "vision/state", 1, &TouchNode::onVision, this)),
+      forces_(subscribeMeasured(bus, "/force_sensor/measured_cf", 1, &TouchNode::onForce, this)) {}
 
 void TouchNode::onVision(const cell_microinjection::VisionState& message) {
   observation_.reset();

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <limits>
 #include <opencv2/core/utility.hpp>
 
 #include "base/atomic_file.h"
@@ -13,7 +12,6 @@
 #include "cell/family/family_cell.h"
 #include "cell/model/scene.h"
 #include "nodes/imaging/image_input.h"
-#include "nodes/imaging/image_topic.h"
 #include "nodes/imaging/vision_messages.h"
 #include "nodes/runtime/message_guard.h"
 #include "nodes/runtime/node_parameters.h"

@@ -38,9 +38,7 @@ VisualServoNode::VisualServoNode(Bus& bus)
       watch_(bus, parameters_.input_timeout),
       setpoints_(bus, watch_),
       proposed_point_(bus.advertise<geometry_msgs::PointStamped>("visual_servo/proposed_point", 1, true)),
-      proposed_pixel_(subscribeGuarded<geometry_msgs::PointStamped>(
-          bus, "visual_servo/proposed_pixel", 1,
-          [this](const geometry_msgs::PointStamped& message, const std::string&) { onProposal(message); })) {}
+      proposed_pixel_(subscribeGuarded(bus, "visual_servo/proposed_pixel", 1, &VisualServoNode::onProposal, this)) {}
 
 CameraCalibration VisualServoNode::readFor(const Eigen::Vector2i& image) const {
   const std::string path = calibrationPath(parameters_.calibration);

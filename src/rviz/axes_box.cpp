@@ -1,5 +1,4 @@
 #include "rviz/axes_box.h"
-#include "rviz/box_layout.h"
 
 namespace microinjection {
 namespace {

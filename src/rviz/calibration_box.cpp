@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "rviz/box_layout.h"
 #include "rviz/camera_task_runners.h"
 
 namespace microinjection {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <QColor>
+#include <QString>
 
 #include "operation/console/light.h"
 
@@ -32,5 +33,19 @@ constexpr QRgb kPastColour = 0xffb8bcc2;
 constexpr QRgb kPastTextColour = 0xff858b92;  ///< the same, readable
 constexpr QRgb kGuardColour = 0xffd02c2c;     ///< limits
 constexpr QRgb kPunctureColour = 0xff7b3fa0;  ///< the expected one
+
+/// The style sheet of a button. `more`: declarations of its own.
+inline QString buttonStyle(QRgb fill, QRgb text, const char* more = "") {
+  const QColor colour(fill);
+  return QString(
+             "QPushButton { background: %1; color: %2; border: none; border-radius: 4px; padding: 3px 8px; %3 }"
+             "QPushButton:pressed { background: %4; }")
+      .arg(colour.name(), QColor(text).name(), more, colour.darker(130).name());
+}
+
+/// Of a button that is offered, or is greyed.
+inline QString offerStyle(bool offered) {
+  return offered ? buttonStyle(kOfferedColour, 0xffffffff) : buttonStyle(kRefusedColour, kMutedColour);
+}
 
 }  // namespace microinjection

@@ -4,7 +4,7 @@
 #include <QShortcut>
 #include <utility>
 
-#include "rviz/button_style.h"
+#include "rviz/colours.h"
 
 namespace microinjection {
 namespace {

@@ -1,8 +1,5 @@
 #include "rviz/injection_box.h"
 
-#include <utility>
-
-#include "rviz/box_layout.h"
 #include "rviz/session_clock.h"
 
 namespace microinjection {

@@ -1,7 +1,6 @@
 #include "rviz/link_box.h"
 
 #include <QGridLayout>
-#include <string>
 
 #include "rviz/offer_row.h"
 

@@ -1,17 +1,56 @@
 #include "rviz/microscope_widget.h"
 
+#include <cv_bridge/cv_bridge.h>
+#include <sensor_msgs/Image.h>
+#include <sensor_msgs/image_encodings.h>
+
 #include <QGridLayout>
+#include <QImage>
+#include <QString>
 #include <QVBoxLayout>
+#include <cstdint>
 #include <utility>
 
 #include "rviz/focus_bar.h"
-#include "rviz/image_conversion.h"
 #include "rviz/lamp_row.h"
 #include "rviz/microscope_view.h"
 #include "rviz/pixel_goal_bar.h"
 #include "rviz/specimen_painter.h"
 
 namespace microinjection {
+namespace {
+
+constexpr std::uint32_t kLargestSide = 16384;  // px
+
+/// The picture of a message: grey, colour or Bayer, of 8 or 16 bits. A picture of 16 bits is
+/// stretched from its darkest to its brightest value. Null with the reason in `defect` for a message
+/// that cannot be read.
+QImage toPicture(const sensor_msgs::Image& message, QString& defect) {
+  namespace encodings = sensor_msgs::image_encodings;
+  // cv_bridge compares the length in 32 bits, and would read beyond a short one.
+  const bool sized = message.width > 0 && message.height > 0 && message.width <= kLargestSide &&
+                     message.height <= kLargestSide &&
+                     std::uint64_t{message.height} * message.step == message.data.size();
+  if (!sized) {
+    defect = "its size or length is wrong";
+    return {};
+  }
+  try {
+    const auto source = cv_bridge::toCvShare(message, boost::shared_ptr<void const>());
+    cv_bridge::CvtColorForDisplayOptions options;
+    options.do_dynamic_scaling = encodings::bitDepth(message.encoding) > 8;
+    const bool grey = message.encoding == encodings::MONO8;
+    const cv::Mat pixels =
+        grey ? source->image : cv_bridge::cvtColorForDisplay(source, encodings::RGB8, options)->image;
+    const auto format = grey ? QImage::Format_Grayscale8 : QImage::Format_RGB888;
+    return QImage(pixels.data, pixels.cols, pixels.rows, static_cast<int>(pixels.step), format).copy();
+  } catch (const std::exception& error) {  // cv_bridge's and OpenCV's
+    defect = error.what();
+    return {};
+  }
+}
+
+}  // namespace
 
 MicroscopeWidget::MicroscopeWidget(std::function<void()> appear, QWidget* parent)
     : QWidget(parent),

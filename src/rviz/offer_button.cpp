@@ -1,6 +1,6 @@
 #include "rviz/offer_button.h"
 
-#include "rviz/button_style.h"
+#include "rviz/colours.h"
 
 namespace microinjection {
 

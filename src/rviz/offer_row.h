@@ -1,6 +1,8 @@
 #pragma once
 
 #include <QGridLayout>
+#include <QLabel>
+#include <QWidget>
 #include <functional>
 
 #include "operation/console/console_commands.h"
@@ -25,5 +27,16 @@ class OfferRow {
   OfferButton* button_;
   ElidedLabel* text_;
 };
+
+/// The grid of a box of the console: a title above, buttons in the first column, what they have to say in the second.
+inline QGridLayout* boxLayout(QWidget* box, const char* title) {
+  auto* layout = new QGridLayout(box);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->setHorizontalSpacing(8);
+  layout->setVerticalSpacing(1);
+  layout->setColumnStretch(1, 1);
+  layout->addWidget(new QLabel(QString("<b>%1</b>").arg(title), box), 0, 0, 1, 2);
+  return layout;
+}
 
 }  // namespace microinjection

@@ -4,7 +4,7 @@
 #include <QLabel>
 #include <type_traits>
 
-#include "operation/console/score_lines.h"
+#include "operation/console/guard_margins.h"
 #include "rviz/elided_label.h"
 #include "rviz/guard_row.h"
 #include "rviz/session_link.h"

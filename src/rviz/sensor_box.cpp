@@ -6,7 +6,6 @@
 #include <QLabel>
 
 #include "base/parse_number.h"
-#include "rviz/box_layout.h"
 
 namespace microinjection {
 namespace {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "rviz/session_clock.h"
 #include "rviz/session_parameters.h"

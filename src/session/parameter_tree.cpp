@@ -184,4 +184,12 @@ std::string parameterText(const YAML::Node& parameters, int indent) {
   return text;
 }
 
+std::string shortNumber(double value, int digits) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.*g", digits, value);
+  return text;
+}
+
+double roundedParameter(double value) { return std::strtod(shortNumber(value).c_str(), nullptr); }
+
 }  // namespace microinjection

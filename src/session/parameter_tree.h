@@ -33,4 +33,9 @@ std::string parameterText(const YAML::Node& parameters, int indent = 0);
 /// A scalar as parameterText writes it.
 std::string scalarText(const YAML::Node& scalar);
 
+/// To six digits, so that a scaled parameter has no tail of 1e-21.
+double roundedParameter(double value);
+/// With up to `digits` digits, for messages: 2e-05.
+std::string shortNumber(double value, int digits = 6);
+
 }  // namespace microinjection

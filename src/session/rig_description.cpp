@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -14,7 +13,6 @@
 
 #include "base/errors.h"
 #include "session/parameter_tree.h"
-#include "session/rounded_parameter.h"
 
 namespace microinjection {
 namespace {

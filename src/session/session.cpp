@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <sstream>
 
 #include "base/errors.h"
-#include "session/package_folder.h"
 #include "session/parameter_tree.h"
 #include "session/session_check.h"
 #include "session/session_choices.h"
@@ -143,53 +141,6 @@ class Loader {
   std::vector<std::string> errors_;
 };
 
-/// A group of keys of a file.
-class Group {
- public:
-  explicit Group(int indent) : indent_(indent, ' ') {}
-  Group& text(const std::string& key, const std::string& value) { return add(key, textValue(value)); }
-  Group& flag(const std::string& key, bool value) { return add(key, booleanValue(value)); }
-  Group& number(const std::string& key, double value) { return add(key, numberValue(value)); }
-  Group& raw(const std::string& key, const std::string& value) {
-    text_ += indent_ + key + ":" + value;
-    return *this;
-  }
-  const std::string& lines() const { return text_; }
-
- private:
-  Group& add(const std::string& key, const YAML::Node& value) { return raw(key, " " + scalarText(value) + "\n"); }
-
-  std::string indent_, text_;
-};
-
-std::string handText(const Session::Hand& hand) {
-  const std::string topics = Group(4)
-                                 .text("namespace", hand.topics.name_space)
-                                 .text("force", hand.topics.force)
-                                 .text("clutch", hand.topics.clutch)
-                                 .text("operator_present", hand.topics.operator_present)
-                                 .lines();
-  return "\n" + Group(2)
-                    .text("device", hand.device)
-                    .text("config", hand.config.empty() ? "auto" : hand.config)
-                    .raw("topics", "\n" + topics)
-                    .text("position_type", hand.position_type)
-                    .flag("require_operator", hand.require_operator)
-                    .text("motion", hand.motion)
-                    .flag("wait_for_go", hand.wait_for_go)
-                    .lines();
-}
-
-std::string sensorText(const Session::Sensor& sensor) {
-  std::vector<std::string> mounting;
-  for (const double value : sensor.mounting) mounting.push_back(numberText(value));
-  return "\n" + Group(2)
-                    .text("source", sensor.source)
-                    .raw("mounting", " [" + join(mounting, ", ") + "]\n")
-                    .flag("quiet", sensor.quiet)
-                    .lines();
-}
-
 }  // namespace
 
 std::string SessionPlaces::at(const std::string& key) const {
@@ -214,61 +165,70 @@ Session Session::load(const std::string& file_or_name, const std::vector<std::st
 }
 
 std::string Session::text() const {
-  Group keys(0);
-  keys.raw("version", " " + std::to_string(kVersion) + "\n");
-  keys.text("cell", cell).text("hidden", hidden).text("model", model).flag("estimator", estimator);
-  keys.raw("rig", "\n" + Group(2)
-                             .text("name", rig.name)
-                             .text("port", rig.port)
-                             .text("namespace", rig.name_space)
-                             .text("config", rig.config)
-                             .text("urdf", rig.urdf)
-                             .flag("allow_network", rig.allow_network)
-                             .lines());
-  keys.raw("holder_rig", "\n" + Group(2)
-                                    .text("name", holder_rig.name)
-                                    .text("port", holder_rig.port)
-                                    .text("namespace", holder_rig.name_space)
-                                    .text("config", holder_rig.present() ? holder_rig.config : "auto")
-                                    .text("urdf", holder_rig.present() ? holder_rig.urdf : "auto")
-                                    .lines());
-  keys.raw("sensor", sensorText(sensor)).text("injector", injector).text("holder", holder).raw("hand", handText(hand));
-  keys.raw("force", "\n" + Group(2).text("controller", force.controller).text("hand", force.hand).lines());
-  keys.raw("injection", "\n" + Group(2)
-                                   .text("mode", injection.mode)
-                                   .flag("auto_enable", injection.auto_enable)
-                                   .flag("start_when_enabled", injection.start_when_enabled)
-                                   .raw("layers", " " + std::to_string(injection.layers) + "\n")
-                                   .lines());
-  keys.raw("link", "\n" + Group(2)
-                              .text("scheme", link.scheme)
-                              .number("delay", link.delay)
-                              .number("jitter", link.jitter)
-                              .number("loss", link.loss)
-                              .flag("emulated", link.emulated)
-                              .lines());
-  keys.raw("camera", "\n" + Group(2)
-                                .text("source", camera.source)
-                                .text("config", camera.config)
-                                .text("path", camera.path)
-                                .text("topic", camera.topic)
-                                .lines());
-  keys.raw("display", "\n" + Group(2)
-                                 .flag("markers", display.markers)
-                                 .flag("rviz", display.rviz)
-                                 .text("console", display.console)
-                                 .lines());
-  keys.raw("record", "\n" + Group(2)
-                                .text("folder", record.folder)
-                                .flag("bag", record.bag)
-                                .flag("end_when_done", record.end_when_done)
-                                .text("trainee", record.trainee)
-                                .text("history", record.history)
-                                .text("training", record.training)
-                                .lines());
-  keys.text("notebook", notebook);
-  keys.raw("overrides", overrides.size() == 0 ? " {}\n" : "\n" + parameterText(overrides, 2));
-  return keys.lines();
+  YAML::Node keys = emptyMap();
+  const auto text = [&](const std::string& key, const std::string& value) {
+    setParameter(keys, key, textValue(value));
+  };
+  const auto flag = [&](const std::string& key, bool value) { setParameter(keys, key, booleanValue(value)); };
+  const auto number = [&](const std::string& key, double value) { setParameter(keys, key, numberValue(value)); };
+  setParameter(keys, "version", integerValue(kVersion));
+  text("cell", cell);
+  text("hidden", hidden);
+  text("model", model);
+  flag("estimator", estimator);
+  text("rig/name", rig.name);
+  text("rig/port", rig.port);
+  text("rig/namespace", rig.name_space);
+  text("rig/config", rig.config);
+  text("rig/urdf", rig.urdf);
+  flag("rig/allow_network", rig.allow_network);
+  text("holder_rig/name", holder_rig.name);
+  text("holder_rig/port", holder_rig.port);
+  text("holder_rig/namespace", holder_rig.name_space);
+  text("holder_rig/config", holder_rig.present() ? holder_rig.config : "auto");
+  text("holder_rig/urdf", holder_rig.present() ? holder_rig.urdf : "auto");
+  text("sensor/source", sensor.source);
+  for (const double value : sensor.mounting) keys["sensor"]["mounting"].push_back(numberValue(value));
+  flag("sensor/quiet", sensor.quiet);
+  text("injector", injector);
+  text("holder", holder);
+  text("hand/device", hand.device);
+  text("hand/config", hand.config.empty() ? "auto" : hand.config);
+  text("hand/topics/namespace", hand.topics.name_space);
+  text("hand/topics/force", hand.topics.force);
+  text("hand/topics/clutch", hand.topics.clutch);
+  text("hand/topics/operator_present", hand.topics.operator_present);
+  text("hand/position_type", hand.position_type);
+  flag("hand/require_operator", hand.require_operator);
+  text("hand/motion", hand.motion);
+  flag("hand/wait_for_go", hand.wait_for_go);
+  text("force/controller", force.controller);
+  text("force/hand", force.hand);
+  text("injection/mode", injection.mode);
+  flag("injection/auto_enable", injection.auto_enable);
+  flag("injection/start_when_enabled", injection.start_when_enabled);
+  setParameter(keys, "injection/layers", integerValue(injection.layers));
+  text("link/scheme", link.scheme);
+  number("link/delay", link.delay);
+  number("link/jitter", link.jitter);
+  number("link/loss", link.loss);
+  flag("link/emulated", link.emulated);
+  text("camera/source", camera.source);
+  text("camera/config", camera.config);
+  text("camera/path", camera.path);
+  text("camera/topic", camera.topic);
+  flag("display/markers", display.markers);
+  flag("display/rviz", display.rviz);
+  text("display/console", display.console);
+  text("record/folder", record.folder);
+  flag("record/bag", record.bag);
+  flag("record/end_when_done", record.end_when_done);
+  text("record/trainee", record.trainee);
+  text("record/history", record.history);
+  text("record/training", record.training);
+  text("notebook", notebook);
+  setParameter(keys, "overrides", overrides);
+  return parameterText(keys);
 }
 
 }  // namespace microinjection

@@ -8,11 +8,10 @@
 
 #include "base/config_reader.h"
 #include "base/errors.h"
-#include "base/user_data.h"
+#include "base/paths.h"
 #include "session/cell_facts.h"
 #include "session/parameter_tree.h"
 #include "session/rig_description.h"
-#include "session/rounded_parameter.h"
 
 namespace microinjection {
 namespace {

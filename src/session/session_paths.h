@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "base/absolute_path.h"
+#include "base/paths.h"
 
 namespace microinjection {
 
@@ -14,5 +14,9 @@ bool isFile(const std::string& path);
 
 /// Folder of files that last as long as a user's login: $XDG_RUNTIME_DIR, else /tmp.
 std::string runtimeFolder();
+
+/// The folder that has `config` and `urdf`: the share folder of the installation that the running program is in, else
+/// the sources that it was built from.
+std::string packageFolder();
 
 }  // namespace microinjection

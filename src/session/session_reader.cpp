@@ -1,9 +1,8 @@
 #include "session/session_reader.h"
 
-#include "base/user_data.h"
+#include "base/paths.h"
 #include "session/layer_section.h"
 #include "session/session_choices.h"
-#include "session/session_paths.h"
 
 namespace microinjection {
 namespace {

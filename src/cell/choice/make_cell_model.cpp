@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "base/errors.h"
-#include "cell/choice/member_change.h"
 #include "cell/choice/model_choice.h"
 #include "cell/family/family_cell.h"
 #include "cell/family/held_force_family.h"

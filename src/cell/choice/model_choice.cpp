@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <memory>
 #include <sstream>
 
 #include "base/bytes.h"
-#include "base/cache_file.h"
 #include "base/cpu_time.h"
 #include "cell/model/contact_frame.h"
 #include "cell/model/converged_force.h"

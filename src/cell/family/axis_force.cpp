@@ -1,4 +1,5 @@
 #include "cell/family/axis_force.h"
+#include "cell/surrogate/axis_ray.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +7,7 @@
 #include <vector>
 
 #include "cell/family/family_member.h"
-#include "cell/surrogate/axis_ray.h"
+#include "cell/surrogate/training_ray.h"
 
 namespace microinjection {
 namespace {

@@ -2,7 +2,6 @@
 
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "cell/identification/elastic_law.h"
 #include "cell/model/scene.h"

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
-#include <limits>
-#include <optional>
 #include <utility>
 
 #include "base/errors.h"

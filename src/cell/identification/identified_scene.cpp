@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <sstream>
 
-#include "base/errors.h"
 #include "cell/model/scene.h"
 
 namespace microinjection {

@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "base/config_errors.h"
-#include "cell/material/lame.h"
 #include "cell/material/material_models.h"
 #include "cell/material/material_parameter.h"
 #include "cell/material/second_derivatives.h"

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <numeric>
 #include <stdexcept>
-#include <string>
 
 #include "cell/mechanics/p1_body.h"
 

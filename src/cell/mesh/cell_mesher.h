@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "cell/mesh/cell_mesh_config.h"
+#include "cell/mesh/mesh_config.h"
 #include "cell/mesh/tet_mesh.h"
 
 namespace microinjection {

@@ -7,7 +7,6 @@
 #include <functional>
 #include <map>
 #include <set>
-#include <string>
 #include <utility>
 
 #include "cell/mesh/gmsh_session.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "cell/mesh/section_mesh_config.h"
+#include "cell/mesh/mesh_config.h"
 #include "cell/mesh/triangle_mesh.h"
 
 namespace microinjection {

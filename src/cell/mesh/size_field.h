@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "cell/mesh/cell_mesh_config.h"
 #include "cell/mesh/circle_on_sphere.h"
+#include "cell/mesh/mesh_config.h"
 
 namespace microinjection {
 

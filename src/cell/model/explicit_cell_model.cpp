@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "base/errors.h"
-#include "cell/mechanics/element_frequency.h"
+#include "cell/mechanics/largest_frequency.h"
 
 namespace microinjection {
 namespace {

@@ -1,16 +1,41 @@
 #include "cell/surrogate/surface_shape.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <stdexcept>
 
-#include "cell/surrogate/radial_basis.h"
 #include "cell/surrogate/surface_grid.h"
 
 namespace microinjection {
 namespace {
+
+double cube(double x) { return x * x * x; }
+
+/// Interpolation by radial basis functions r^3 with a linear part. `centres` has a column for each
+/// of n points in d dimensions.
+///
+/// Values of the functions at a point: of each centre, then 1 and the coordinates (n + 1 + d).
+Eigen::VectorXd radialBasis(const Eigen::MatrixXd& centres, const Eigen::VectorXd& at) {
+  const Eigen::Index count = centres.cols();
+  Eigen::VectorXd values(count + 1 + centres.rows());
+  for (Eigen::Index i = 0; i < count; ++i) values[i] = cube((centres.col(i) - at).norm());
+  values[count] = 1;
+  values.tail(centres.rows()) = at;
+  return values;
+}
+
+/// Weights (n + 1 + d rows) of the functions, for each column of `values` (n rows) at the centres.
+Eigen::MatrixXd radialWeights(const Eigen::MatrixXd& centres, const Eigen::MatrixXd& values) {
+  const Eigen::Index count = centres.cols(), size = count + 1 + centres.rows();
+  Eigen::MatrixXd system = Eigen::MatrixXd::Zero(size, size), right = Eigen::MatrixXd::Zero(size, values.cols());
+  for (Eigen::Index i = 0; i < count; ++i) system.row(i) = radialBasis(centres, centres.col(i)).transpose();
+  system.bottomLeftCorner(size - count, count) = system.topRightCorner(count, size - count).transpose();
+  right.topRows(count) = values;
+  return system.partialPivLu().solve(right);
+}
 
 constexpr Eigen::Index kModes = 40;
 constexpr double kNegligible = 1e-10;  ///< eigenvalue, relative to the largest: 1e-5 of the motion

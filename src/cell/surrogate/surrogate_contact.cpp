@@ -1,7 +1,6 @@
 #include "cell/surrogate/surrogate_contact.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "cell/surrogate/range_border.h"

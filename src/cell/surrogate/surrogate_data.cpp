@@ -6,10 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "base/cache_file.h"
 #include "cell/model/similarity.h"
 #include "cell/surrogate/energy_fit.h"
-#include "cell/surrogate/training_set.h"
 
 namespace microinjection {
 namespace {

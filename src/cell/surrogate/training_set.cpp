@@ -1,9 +1,9 @@
 #include "cell/surrogate/training_set.h"
+#include "cell/surrogate/axis_ray.h"
 
 #include <algorithm>
 #include <stdexcept>
 
-#include "cell/surrogate/axis_ray.h"
 #include "cell/surrogate/mesh_correction.h"
 
 namespace microinjection {

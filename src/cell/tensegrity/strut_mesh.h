@@ -1,8 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
-#include <vector>
 
 #include "cell/mesh/tet_mesh.h"
 

@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <limits>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "cell/mechanics/equilibrium_system.h"

@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "cell/mechanics/equilibrium_system.h"

@@ -4,7 +4,6 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <string>
 
 #include "hardware/devices/joint_axes.h"
 #include "hardware/devices/origin_monitor.h"

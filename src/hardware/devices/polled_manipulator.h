@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "hardware/devices/move_by_move.h"
 #include "hardware/serial/line_splitter.h"

@@ -1,6 +1,5 @@
 #include "hardware/devices/serial_manipulator.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "hardware/devices/known_answers.h"

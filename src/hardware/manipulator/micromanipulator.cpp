@@ -2,11 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <sstream>
-#include <utility>
-
-#include "hardware/manipulator/approach_speed.h"
 
 namespace microinjection {
 namespace {

@@ -1,7 +1,5 @@
 #include "hardware/manipulator/solid.h"
 
-#include <cmath>
-
 namespace microinjection {
 namespace {
 

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "hardware/manipulator/approach_speed.h"
-
 namespace microinjection {
 namespace {
 

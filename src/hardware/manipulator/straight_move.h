@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 
 #include "hardware/manipulator/manipulator_geometry.h"
 
@@ -33,5 +34,12 @@ double straightSpeed(const ManipulatorGeometry& geometry, const Eigen::Vector3d&
 /// axes' limits. A motion that is not on that line brakes first.
 Eigen::Vector3d straightVelocity(const ManipulatorGeometry& geometry, const AxesMotion& motion,
                                  const Eigen::Vector3d& goal, double speed, double dt);
+
+/// Largest speed (m/s) for the next `dt` (s) that does not pass a point `distance` (m, >= 0) ahead:
+/// v dt + v^2 / (2 a) = distance, with the deceleration a (m/s^2). Applied in each step, it
+/// decelerates by at most a, whatever dt is, and ends exactly at the point.
+inline double approachSpeed(double distance, double acceleration, double dt) {
+  return 2 * distance / (std::sqrt(dt * dt + 2 * distance / acceleration) + dt);
+}
 
 }  // namespace microinjection

@@ -1,7 +1,6 @@
 #include "hardware/sensor/volt_reading.h"
 
 #include <cstdio>
-#include <vector>
 
 #include "base/parse_number.h"
 #include "hardware/serial/line_ending.h"

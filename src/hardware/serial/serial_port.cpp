@@ -11,7 +11,6 @@
 #include <cstring>
 
 #include "hardware/serial/line_mode.h"
-#include "hardware/serial/low_latency.h"
 #include "hardware/serial/stop_guard.h"
 
 namespace microinjection {

@@ -10,12 +10,10 @@
 
 #include <cerrno>
 #include <csignal>
-#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <ctime>
 #include <fstream>
-#include <initializer_list>
 #include <sstream>
 #include <string>
 

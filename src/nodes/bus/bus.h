@@ -6,14 +6,12 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "nodes/bus/message_refusals.h"
 #include "nodes/bus/message_type.h"
-#include "nodes/bus/service_type.h"
 
 namespace microinjection {
 

@@ -63,9 +63,8 @@ CellParameterServer::CellParameterServer(MemberChange* change, const std::string
   using cell_microinjection::CellParameters;
   using cell_microinjection::SetCellParameters;
   const Serving serving = cycle.bus().isVirtual() ? Serving::kSampled : Serving::kOwnThread;
-  subscription_ = subscribeGuarded<CellParameters>(
-      cycle.bus(), "cell/set_parameters", 1,
-      [this](const CellParameters& message, const std::string&) { receive(message); }, StampRule::kTimely, serving);
+  subscription_ = subscribeGuarded(cycle.bus(), "cell/set_parameters", 1, &CellParameterServer::receive, this,
+                                   StampRule::kTimely, serving);
   service_ = cycle.bus().advertiseService<SetCellParameters>(
       "~set_cell_parameters",
       [this](const SetCellParameters::Request& request, SetCellParameters::Response& response) {

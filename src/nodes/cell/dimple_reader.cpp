@@ -38,8 +38,7 @@ std::optional<Depth> depthIn(const cell_microinjection::VisionState& message) {
 DimpleReader::DimpleReader(Bus& bus, const ImageContactConfig& config)
     : config_(config), contact_(config, 1), places_(kPlaces) {
   using cell_microinjection::VisionState;
-  states_ = subscribeGuarded<VisionState>(bus, "vision/state", 1,
-                                          [this](const VisionState& message, const std::string&) { onState(message); });
+  states_ = subscribeGuarded(bus, "vision/state", 1, &DimpleReader::onState, this);
 }
 
 void DimpleReader::startCell(double radius) {

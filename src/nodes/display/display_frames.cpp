@@ -8,19 +8,10 @@
 namespace microinjection {
 namespace {
 
-geometry_msgs::TransformStamped enlarged(const std::string& frame, const Eigen::Isometry3d& pose, double enlargement,
+geometry_msgs::TransformStamped enlarged(const std::string& frame, Eigen::Isometry3d pose, double enlargement,
                                          const ros::Time& stamp) {
-  const Eigen::Quaterniond rotation(pose.linear());
-  geometry_msgs::TransformStamped message;
-  message.header.stamp = stamp;
-  message.header.frame_id = "viz/world";
-  message.child_frame_id = "viz/" + frame;
-  message.transform.translation = toMessage<geometry_msgs::Vector3>(toDisplay(pose.translation(), enlargement));
-  message.transform.rotation.x = rotation.x();
-  message.transform.rotation.y = rotation.y();
-  message.transform.rotation.z = rotation.z();
-  message.transform.rotation.w = rotation.w();
-  return message;
+  pose.translation() = toDisplay(pose.translation(), enlargement);
+  return toTransform(pose, stamp, "viz/world", "viz/" + frame);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 
 #include "base/errors.h"
 #include "base/operating_state.h"
-#include "base/user_data.h"
+#include "base/paths.h"
 #include "nodes/runtime/background_writing.h"
 #include "nodes/runtime/message_guard.h"
 

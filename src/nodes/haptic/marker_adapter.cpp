@@ -1,17 +1,67 @@
 #include "nodes/haptic/marker_adapter.h"
 
 #include <ros/console.h>
+#include <visualization_msgs/InteractiveMarker.h>
 
+#include <cmath>
 #include <cstdio>
 
 #include "nodes/display/display_markers.h"
-#include "nodes/haptic/hand_marker.h"
 #include "nodes/runtime/conversions.h"
-#include "operation/display/display_scale.h"
 #include "operation/display/force_arrow.h"
 
 namespace microinjection {
 namespace {
+
+/// The handle's name among the interactive markers of /hand_marker.
+constexpr char kHandMarker[] = "hand";
+
+using visualization_msgs::InteractiveMarkerControl;
+
+constexpr double kSize = 0.3;  // display units, of the arrows
+constexpr double kBall = 0.1;  // display units, diameter
+
+/// A control moves along the x axis of its orientation; rviz draws the arrows.
+InteractiveMarkerControl axisControl(const std::string& name, double x, double y, double z) {
+  InteractiveMarkerControl control;
+  control.name = name;
+  control.interaction_mode = InteractiveMarkerControl::MOVE_AXIS;
+  control.orientation.w = std::sqrt(0.5);
+  control.orientation.x = std::sqrt(0.5) * x;
+  control.orientation.y = std::sqrt(0.5) * y;
+  control.orientation.z = std::sqrt(0.5) * z;
+  return control;
+}
+
+InteractiveMarkerControl ballControl() {
+  visualization_msgs::Marker ball;
+  ball.type = visualization_msgs::Marker::SPHERE;
+  ball.pose.orientation.w = 1;
+  ball.scale.x = ball.scale.y = ball.scale.z = kBall;
+  ball.color.r = 1.0F;
+  ball.color.g = 0.75F;
+  ball.color.b = 0.2F;
+  ball.color.a = 0.9F;
+  InteractiveMarkerControl control;
+  control.name = "ball";
+  control.interaction_mode = InteractiveMarkerControl::MOVE_3D;
+  control.orientation.w = 1;
+  control.always_visible = true;
+  control.markers.push_back(ball);
+  return control;
+}
+
+/// A ball for dragging in the view's plane and an arrow along each axis, in display units around
+/// the origin of `frame`.
+visualization_msgs::InteractiveMarker handMarker(const std::string& frame) {
+  visualization_msgs::InteractiveMarker marker;
+  marker.header.frame_id = frame;
+  marker.name = kHandMarker;
+  marker.scale = static_cast<float>(kSize);
+  marker.pose.orientation.w = 1;
+  marker.controls = {axisControl("x", 1, 0, 0), axisControl("y", 0, 0, 1), axisControl("z", 0, 1, 0), ballControl()};
+  return marker;
+}
 
 constexpr char kFrame[] = "viz/world";
 constexpr double kDragTimeout = 0.2;            // s, of needle and its target

@@ -1,7 +1,7 @@
 #include "nodes/imaging/hand_setpoints.h"
 
 #include "base/errors.h"
-#include "nodes/imaging/image_size.h"
+#include "nodes/imaging/image_input.h"
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/message_guard.h"
 

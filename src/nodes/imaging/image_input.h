@@ -1,10 +1,11 @@
 #pragma once
 
 #include <sensor_msgs/Image.h>
+#include <opencv2/core/mat.hpp>
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <functional>
-#include <opencv2/core/mat.hpp>
 #include <string>
 
 #include "base/config_reader.h"
@@ -31,5 +32,17 @@ std::string imageDefect(const sensor_msgs::Image& message);
 /// patterns become grey of the same depth. Throws cv_bridge::Exception for a format that is not known. @pre
 /// imageDefect() is empty
 cv::Mat pixelsOf(const sensor_msgs::Image& message);
+
+/// Empty, or why what began with images of one size (px, width and height) cannot go on with those of another. (0, 0):
+/// not known.
+inline std::string sizeChange(const Eigen::Vector2i& begun, const Eigen::Vector2i& now) {
+  if (begun.isZero() || now.isZero() || begun == now) return "";
+  const auto text = [](const Eigen::Vector2i& s) { return std::to_string(s.x()) + " x " + std::to_string(s.y()); };
+  return "the images are of " + text(now) + " px now, and were of " + text(begun) +
+         " px when this began: do not bin or crop them meanwhile, and begin anew";
+}
+
+/// The microscope's images (sensor_msgs/Image).
+constexpr char kImageTopic[] = "microscope/image_raw";
 
 }  // namespace microinjection

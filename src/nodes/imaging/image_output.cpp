@@ -6,7 +6,7 @@
 
 #include <stdexcept>
 
-#include "nodes/imaging/image_topic.h"
+#include "nodes/imaging/image_input.h"
 
 namespace microinjection {
 namespace {

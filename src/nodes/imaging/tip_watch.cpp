@@ -29,30 +29,26 @@ TipWatch::TipWatch(Bus& bus, double timeout) : bus_(bus), timeout_(timeout) {
   constexpr int kQueue = 1;
   using cell_microinjection::OperatingState;
   using cell_microinjection::VisionState;
-  subscriptions_ = {
-      subscribeMeasured<geometry_msgs::PoseStamped>(
-          bus, "/needle/measured_cp", kQueue,
-          [this](const geometry_msgs::PoseStamped& message, const std::string&) { onNeedle(message); }),
-      subscribeMeasured<VisionState>(bus, "vision/state", kQueue,
-                                     [this](const VisionState& message, const std::string&) { onVision(message); }),
-      subscribeGuarded<OperatingState>(
-          bus, "/needle/operating_state", kQueue,
-          [this](const OperatingState& message, const std::string&) { needle_state_ = message; }),
-      subscribeGuarded<OperatingState>(
-          bus, "/controller/operating_state", kQueue,
-          [this](const OperatingState& message, const std::string&) { controller_state_ = message; }),
-      subscribeMeasured<cell_microinjection::CellContact>(
-          bus, "/cell/contact", kQueue,
-          [this](const cell_microinjection::CellContact& message, const std::string&) {
-            touches_ = message.in_contact || message.inside;
-            touch_heard_ = {awake_.seconds(), bus_.steady()};
-          }),
-      subscribeMeasured<cell_microinjection::InjectionStatus>(
-          bus, "/controller/injection_state", kQueue,
-          [this](const cell_microinjection::InjectionStatus& message, const std::string&) {
-            injects_ = message.state != "idle" && message.state != "approach" && message.state != "fault";
-            injection_heard_ = {awake_.seconds(), bus_.steady()};
-          })};
+  subscriptions_ = {subscribeMeasured(bus, "/needle/measured_cp", kQueue, &TipWatch::onNeedle, this),
+                    subscribeMeasured(bus, "vision/state", kQueue, &TipWatch::onVision, this),
+                    subscribeGuarded<OperatingState>(
+                        bus, "/needle/operating_state", kQueue,
+                        [this](const OperatingState& message, const std::string&) { needle_state_ = message; }),
+                    subscribeGuarded<OperatingState>(
+                        bus, "/controller/operating_state", kQueue,
+                        [this](const OperatingState& message, const std::string&) { controller_state_ = message; }),
+                    subscribeMeasured<cell_microinjection::CellContact>(
+                        bus, "/cell/contact", kQueue,
+                        [this](const cell_microinjection::CellContact& message, const std::string&) {
+                          touches_ = message.in_contact || message.inside;
+                          touch_heard_ = {awake_.seconds(), bus_.steady()};
+                        }),
+                    subscribeMeasured<cell_microinjection::InjectionStatus>(
+                        bus, "/controller/injection_state", kQueue,
+                        [this](const cell_microinjection::InjectionStatus& message, const std::string&) {
+                          injects_ = message.state != "idle" && message.state != "approach" && message.state != "fault";
+                          injection_heard_ = {awake_.seconds(), bus_.steady()};
+                        })};
   timer_ = bus.timer(kAwakePeriod, [this] { awake_.step(bus_.steady()); });
 }
 

@@ -1,9 +1,6 @@
 #include "nodes/imaging/vision_messages.h"
 
-#include <cmath>
-#include <limits>
-
-#include "vision/layers/zona_thickness.h"
+#include "vision/layers/cell_size.h"
 
 namespace microinjection {
 namespace {

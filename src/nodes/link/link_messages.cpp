@@ -1,7 +1,6 @@
 #include "nodes/link/link_messages.h"
 
 #include <cmath>
-#include <cstdint>
 
 #include "nodes/runtime/conversions.h"
 #include "nodes/runtime/finite_message.h"

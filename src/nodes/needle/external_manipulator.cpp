@@ -1,7 +1,6 @@
 #include "nodes/needle/external_manipulator.h"
 
 #include <algorithm>
-#include <cmath>
 #include <regex>
 #include <set>
 #include <sstream>

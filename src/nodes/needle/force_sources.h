@@ -5,7 +5,6 @@
 #include <geometry_msgs/WrenchStamped.h>
 
 #include <Eigen/Geometry>
-#include <memory>
 #include <optional>
 #include <string>
 

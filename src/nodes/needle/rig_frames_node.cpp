@@ -10,21 +10,6 @@
 namespace microinjection {
 namespace {
 
-geometry_msgs::TransformStamped transform(const std::string& parent, const std::string& child,
-                                          const Eigen::Isometry3d& pose, const ros::Time& stamp) {
-  geometry_msgs::TransformStamped message;
-  message.header.stamp = stamp;
-  message.header.frame_id = parent;
-  message.child_frame_id = child;
-  message.transform.translation = toMessage<geometry_msgs::Vector3>(pose.translation());
-  const Eigen::Quaterniond rotation(pose.linear());
-  message.transform.rotation.x = rotation.x();
-  message.transform.rotation.y = rotation.y();
-  message.transform.rotation.z = rotation.z();
-  message.transform.rotation.w = rotation.w();
-  return message;
-}
-
 Eigen::Isometry3d poseOf(const Eigen::Matrix<double, 6, 1>& numbers) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.translation() = numbers.head<3>();
@@ -49,8 +34,8 @@ RigFramesNode::RigFramesNode(Bus& bus)
   model_ = parseRig(urdf.Scalar());
   for (const auto& [name, joint] : model_->joints_) {
     if (joint->type != urdf::Joint::FIXED) continue;
-    fixed_.push_back(transform(joint->parent_link_name, joint->child_link_name,
-                               toEigen(joint->parent_to_joint_origin_transform), bus.now()));
+    fixed_.push_back(toTransform(toEigen(joint->parent_to_joint_origin_transform), bus.now(), joint->parent_link_name,
+                                 joint->child_link_name));
   }
   ConfigReader reader = parameterReader(bus);
   for (ConfigReader& frame : reader.sections("frames")) {
@@ -59,14 +44,13 @@ RigFramesNode::RigFramesNode(Bus& bus)
     frame.text("parent", parent, ConfigReader::kRequired);
     frame.text("child", child, ConfigReader::kRequired);
     frame.vector("pose", numbers);
-    fixed_.push_back(transform(parent, child, poseOf(numbers), bus.now()));
+    fixed_.push_back(toTransform(poseOf(numbers), bus.now(), parent, child));
   }
   reader.finish();
   tf2_msgs::TFMessage message;
   message.transforms = fixed_;
   static_frames_.publish(message);
-  joints_ = subscribeGuarded<sensor_msgs::JointState>(
-      bus, "joint_states", 10, [this](const sensor_msgs::JointState& joints, const std::string&) { onJoints(joints); });
+  joints_ = subscribeGuarded(bus, "joint_states", 10, &RigFramesNode::onJoints, this);
 }
 
 void RigFramesNode::onJoints(const sensor_msgs::JointState& message) {
@@ -81,7 +65,8 @@ void RigFramesNode::onJoints(const sensor_msgs::JointState& message) {
     } else {
       pose.rotate(Eigen::AngleAxisd(message.position[i], axis));
     }
-    frames.transforms.push_back(transform(joint->parent_link_name, joint->child_link_name, pose, message.header.stamp));
+    frames.transforms.push_back(
+        toTransform(pose, message.header.stamp, joint->parent_link_name, joint->child_link_name));
   }
   moving_frames_.publish(frames);
 }

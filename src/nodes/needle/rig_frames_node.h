@@ -3,7 +3,6 @@
 #include <sensor_msgs/JointState.h>
 #include <tf2_msgs/TFMessage.h>
 
-#include <string>
 #include <vector>
 
 #include "hardware/manipulator/rig_model.h"

@@ -1,7 +1,5 @@
 #include <boost/program_options.hpp>
 #include <cstdio>
-#include <exception>
-#include <iostream>
 #include <optional>
 #include <string>
 #include <vector>

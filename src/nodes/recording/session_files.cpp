@@ -3,6 +3,10 @@
 #include <ros/console.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <ctime>
+#include <filesystem>
 
 namespace microinjection {
 namespace {
@@ -12,6 +16,37 @@ namespace {
 constexpr std::uint64_t kSettled = 1000000000;
 
 }  // namespace
+
+SessionBag::SessionBag(const std::string& path) : path_(path), bag_(std::make_unique<rosbag::Bag>()) {
+  std::filesystem::create_directories(std::filesystem::absolute(path).parent_path());
+  bag_->open(path + ".active", rosbag::bagmode::Write);
+  bag_->setCompression(rosbag::compression::LZ4);
+}
+
+void SessionBag::abort(const std::string& what, int reason) {
+  error_text_ = path_ + ".active: cannot be written: " + what;
+  if (reason != 0) error_text_ += std::string(": ") + std::strerror(reason);
+  ROS_ERROR_STREAM(error_text_ << "; the bag ends here, the session goes on");
+  // A failed bag is not destroyed: its destructor writes again, and its exception would end the
+  // program.
+  static_cast<void>(bag_.release());
+}
+
+std::string SessionBag::close() {
+  if (!bag_) return error_text_;
+  try {
+    errno = 0;
+    bag_->close();
+  } catch (const std::exception& error) {
+    const int reason = errno;
+    abort(error.what(), reason);
+    return error_text_;
+  }
+  bag_.reset();
+  if (std::rename((path_ + ".active").c_str(), path_.c_str()) != 0)
+    error_text_ = path_ + ".active: cannot be renamed: " + std::strerror(errno);
+  return error_text_;
+}
 
 SessionFiles::SessionFiles(const std::string& folder, const std::string& header, bool bag)
     : rows_(folder + "/force_depth.csv", header) {
@@ -47,6 +82,15 @@ void SessionFiles::report(diagnostic_updater::DiagnosticStatusWrapper& status) c
   if (bag_ && !bag_->errorText().empty()) status.mergeSummary(DiagnosticStatus::ERROR, bag_->errorText());
   status.add("rows written", rows_.written());
   status.add("rows lost", rows_.lost());
+}
+
+std::string localTime(const Bus& bus) {
+  const std::time_t now = bus.isVirtual() ? static_cast<std::time_t>(bus.now().sec) : std::time(nullptr);
+  std::tm parts{};
+  bus.isVirtual() ? gmtime_r(&now, &parts) : localtime_r(&now, &parts);
+  char text[40];
+  std::strftime(text, sizeof(text), "%Y-%m-%dT%H:%M:%S", &parts);
+  return text;
 }
 
 }  // namespace microinjection

@@ -9,6 +9,13 @@ bool isIn(const std::string& frame, const std::string& wanted) { return frame.em
 
 }  // namespace
 
+geometry_msgs::Quaternion toQuaternion(const Eigen::Matrix3d& rotation) {
+  const Eigen::Quaterniond quaternion(rotation);
+  geometry_msgs::Quaternion message = toMessage<geometry_msgs::Quaternion>(quaternion.vec());
+  message.w = quaternion.w();
+  return message;
+}
+
 bool isWithin(const Eigen::Vector3d& vector, double largest) {
   // The norm's squares may overflow.
   return vector.allFinite() && vector.cwiseAbs().maxCoeff() <= largest;
@@ -60,11 +67,7 @@ geometry_msgs::PoseStamped toPose(const Eigen::Isometry3d& pose, const ros::Time
   message.header.stamp = stamp;
   message.header.frame_id = frame;
   message.pose.position = toMessage<geometry_msgs::Point>(pose.translation());
-  const Eigen::Quaterniond orientation(pose.linear());
-  message.pose.orientation.w = orientation.w();
-  message.pose.orientation.x = orientation.x();
-  message.pose.orientation.y = orientation.y();
-  message.pose.orientation.z = orientation.z();
+  message.pose.orientation = toQuaternion(pose.linear());
   return message;
 }
 
@@ -79,6 +82,17 @@ geometry_msgs::WrenchStamped toWrench(const Eigen::Vector3d& force, const ros::T
   message.header.stamp = stamp;
   message.header.frame_id = frame;
   message.wrench.force = toMessage<geometry_msgs::Vector3>(force);
+  return message;
+}
+
+geometry_msgs::TransformStamped toTransform(const Eigen::Isometry3d& pose, const ros::Time& stamp,
+                                            const std::string& parent, const std::string& child) {
+  geometry_msgs::TransformStamped message;
+  message.header.stamp = stamp;
+  message.header.frame_id = parent;
+  message.child_frame_id = child;
+  message.transform.translation = toMessage<geometry_msgs::Vector3>(pose.translation());
+  message.transform.rotation = toQuaternion(pose.linear());
   return message;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <geometry_msgs/PoseStamped.h>
+#include <geometry_msgs/TransformStamped.h>
 #include <geometry_msgs/TwistStamped.h>
 #include <geometry_msgs/WrenchStamped.h>
 
@@ -36,6 +37,9 @@ Message toMessage(const Eigen::Vector3d& vector) {
   return message;
 }
 
+/// The quaternion of a rotation.
+geometry_msgs::Quaternion toQuaternion(const Eigen::Matrix3d& rotation);
+
 /// Whether a vector is finite and no coordinate is larger than `largest`.
 bool isWithin(const Eigen::Vector3d& vector, double largest);
 
@@ -65,6 +69,9 @@ geometry_msgs::PoseStamped toPose(const Eigen::Isometry3d& pose, const ros::Time
 /// A pose with the identity as orientation.
 geometry_msgs::PoseStamped toPose(const Eigen::Vector3d& position, const ros::Time& stamp, const std::string& frame);
 geometry_msgs::WrenchStamped toWrench(const Eigen::Vector3d& force, const ros::Time& stamp, const std::string& frame);
+/// The pose of the frame `child` in `parent`.
+geometry_msgs::TransformStamped toTransform(const Eigen::Isometry3d& pose, const ros::Time& stamp,
+                                            const std::string& parent, const std::string& child);
 geometry_msgs::TwistStamped toTwist(const Eigen::Vector3d& velocity, const ros::Time& stamp, const std::string& frame);
 
 }  // namespace microinjection

@@ -3,12 +3,21 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "nodes/bus/bus.h"
 #include "nodes/runtime/cycle_diagnostics.h"
-#include "nodes/runtime/cycle_ports.h"
+#include "nodes/runtime/ports.h"
+#include "nodes/runtime/stall_monitor.h"
 
 namespace microinjection {
+
+/// The topics of a cycle.
+struct CyclePorts {
+  std::vector<std::unique_ptr<InputPort>> inputs;
+  std::vector<std::unique_ptr<OutputPort>> outputs;
+  StallMonitor stalls;
+};
 
 /// The steps of a node that computes at a rate, as all nodes from the hand to the cell and back do, and the inputs
 /// and outputs that the steps read and write.

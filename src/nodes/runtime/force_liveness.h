@@ -3,7 +3,6 @@
 #include <geometry_msgs/WrenchStamped.h>
 
 #include <Eigen/Core>
-#include <limits>
 #include <optional>
 
 #include "base/repetition.h"

@@ -68,6 +68,15 @@ Subscription subscribeGuarded(Bus& bus, const std::string& topic, std::uint32_t 
   return bus.subscribe<Message>(topic, queue_size, receive, serving);
 }
 
+/// The same for a member function of a node, or of a part of it, which outlives the subscription.
+template <typename Owner, typename Message>
+Subscription subscribeGuarded(Bus& bus, const std::string& topic, std::uint32_t queue_size,
+                              void (Owner::*handler)(const Message&), Owner* owner, StampRule rule = StampRule::kTimely,
+                              Serving serving = Serving::kSampled) {
+  const auto call = [owner, handler](const Message& message, const std::string&) { (owner->*handler)(message); };
+  return subscribeGuarded<Message>(bus, topic, queue_size, call, rule, serving);
+}
+
 /// Like subscribeGuarded, for what is measured, which one node sends. While two nodes do, nobody can know which of
 /// them is right: no message counts, and both are named (SoleSender).
 template <typename Message, typename Handler>
@@ -78,6 +87,14 @@ Subscription subscribeMeasured(Bus& bus, const std::string& topic, std::uint32_t
                                      const std::string refusal = senders->refusalOf(sender, bus.now());
                                      refusal.empty() ? handler(message, sender) : bus.refusals().add(topic, refusal);
                                    });
+}
+
+/// The same for a member function; see subscribeGuarded.
+template <typename Owner, typename Message>
+Subscription subscribeMeasured(Bus& bus, const std::string& topic, std::uint32_t queue_size,
+                               void (Owner::*handler)(const Message&), Owner* owner) {
+  const auto call = [owner, handler](const Message& message, const std::string&) { (owner->*handler)(message); };
+  return subscribeMeasured<Message>(bus, topic, queue_size, call);
 }
 
 }  // namespace microinjection

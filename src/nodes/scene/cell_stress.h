@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cell/material/material.h"
-#include "cell/material/surface_stress_field.h"
+#include "cell/material/surface_stress.h"
 #include "operation/display/cell_surface.h"
 #include "operation/display/surface_quantity.h"
 

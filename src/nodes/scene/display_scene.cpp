@@ -1,7 +1,6 @@
 #include "nodes/scene/display_scene.h"
 
 #include <algorithm>
-#include <vector>
 
 #include "nodes/display/display_markers.h"
 #include "operation/display/force_arrow.h"

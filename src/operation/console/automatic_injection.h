@@ -3,7 +3,6 @@
 #include <string>
 
 #include "operation/console/console_commands.h"
-#include "operation/console/light.h"
 
 namespace microinjection {
 

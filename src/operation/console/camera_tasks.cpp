@@ -5,29 +5,20 @@
 namespace microinjection {
 namespace {
 
-CommandOffer describe(CameraTask task) {
-  switch (task) {
-    case CameraTask::kFocus:
-      return {"Focus", "", "moves the focus until the tip is sharp", ""};
-    case CameraTask::kCalibrate:
-      return {"Calibrate", "", "moves the needle over a pattern above its place: pixel size, angle, backlash", ""};
-    case CameraTask::kRezero:
-      return {"Re-zero", "", "after a pipette change: the tip's new place, with the same axes", ""};
-    case CameraTask::kUndo:
-      return {"Undo", "", "the calibration before this session's last Calibrate or Re-zero", ""};
-    case CameraTask::kTouch:
-      return {"Touch", "", "lowers the needle until the image shows that it touches the cell", ""};
-    case CameraTask::kMeasure:
-      break;
-  }
-  return {"Measure", "", "measures the cell in the image, and has it served", ""};
-}
+/// A task, and the node that does it.
+struct DescribedCameraTask {
+  const char *name, *node, *effect;
+};
+/// In the order of CameraTask.
+constexpr DescribedCameraTask kDescribedCameraTasks[] = {
+    {"Focus", "focus", "moves the focus until the tip is sharp"},
+    {"Calibrate", "calibration", "moves the needle over a pattern above its place: pixel size, angle, backlash"},
+    {"Re-zero", "calibration", "after a pipette change: the tip's new place, with the same axes"},
+    {"Undo", "calibration", "the calibration before this session's last Calibrate or Re-zero"},
+    {"Touch", "touch", "lowers the needle until the image shows that it touches the cell"},
+    {"Measure", "vision", "measures the cell in the image, and has it served"}};
 
-const char* nodeOf(CameraTask task) {
-  if (task == CameraTask::kFocus) return "focus";
-  if (task == CameraTask::kMeasure) return "vision";
-  return task == CameraTask::kTouch ? "touch" : "calibration";
-}
+const DescribedCameraTask& describe(CameraTask task) { return kDescribedCameraTasks[static_cast<std::size_t>(task)]; }
 
 std::string refusalOf(CameraTask task, const SessionView& session) {
   const bool disabled = !session.operating || session.operating == OperatingState::kDisabled;
@@ -39,19 +30,16 @@ std::string refusalOf(CameraTask task, const SessionView& session) {
 
 }  // namespace
 
-const char* toText(CameraTask task) {
-  constexpr const char* kNames[] = {"Focus", "Calibrate", "Re-zero", "Undo", "Touch", "Measure"};
-  return kNames[static_cast<std::size_t>(task)];
-}
+const char* toText(CameraTask task) { return describe(task).name; }
 
 bool isService(CameraTask task) {
   return task == CameraTask::kRezero || task == CameraTask::kUndo || task == CameraTask::kMeasure;
 }
 
 CommandOffer offer(CameraTask task, const SessionView& session, bool there, std::optional<CameraTask> running) {
-  CommandOffer result = describe(task);
+  CommandOffer result{describe(task).name, "", describe(task).effect, ""};
   if (!there) {
-    result.refusal = std::string("no node ") + nodeOf(task) + ": start the session with camera:=";
+    result.refusal = std::string("no node ") + describe(task).node + ": start the session with camera:=";
   } else if (running) {
     result.refusal = std::string(toText(*running)) + " is under way";
   } else {

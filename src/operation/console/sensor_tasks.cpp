@@ -3,19 +3,11 @@
 namespace microinjection {
 namespace {
 
-CommandOffer describe(SensorTask task) {
-  switch (task) {
-    case SensorTask::kTare:
-      return {"Tare", "", "nothing touches the tip", ""};
-    case SensorTask::kPoint:
-      return {"Point", "", "the force below acts now", ""};
-    case SensorTask::kGain:
-      return {"Gain", "", "fits the gain to the points", ""};
-    case SensorTask::kUndo:
-      break;
-  }
-  return {"Undo", "", "takes back the last step", ""};
-}
+/// In the order of SensorTask.
+const CommandOffer kSensorOffers[] = {{"Tare", "", "nothing touches the tip", ""},
+                                      {"Point", "", "the force below acts now", ""},
+                                      {"Gain", "", "fits the gain to the points", ""},
+                                      {"Undo", "", "takes back the last step", ""}};
 
 }  // namespace
 
@@ -23,7 +15,7 @@ CommandOffer describe(SensorTask task) {
 bool SensorView::averaging() const { return outcome == "taring" || outcome == "averaging under the known force"; }
 
 CommandOffer offer(SensorTask task, const SensorView& sensor) {
-  CommandOffer result = describe(task);
+  CommandOffer result = kSensorOffers[static_cast<std::size_t>(task)];
   if (!sensor.there) {
     result.refusal = "no node force_sensor";
   } else if (sensor.called) {

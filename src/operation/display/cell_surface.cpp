@@ -7,8 +7,8 @@
 #include <set>
 #include <utility>
 
+#include "operation/display/colour_map.h"
 #include "operation/display/quadratic_facets.h"
-#include "operation/display/shading.h"
 
 namespace microinjection {
 namespace {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+
 namespace microinjection {
 
 /// sRGB with opacity, each in [0, 1].
@@ -24,5 +26,13 @@ Colour colourOfSignedFraction(double fraction);
 /// ten that is not below `value` (within 0.1 %, more than rounding). Quarters of these have few
 /// digits. 1 for value <= 0.
 double niceCeiling(double value);
+
+/// Brightness (about 1) of a surface with this outward unit normal, for a lamp above the left
+/// shoulder of a viewer who looks along y. It is never dark, so that colours stay recognisable.
+/// rviz does not light triangles with individual colours.
+double lampLight(const Eigen::Vector3d& normal);
+
+/// The colour with its brightness multiplied by `light` (>= 0), clamped; the opacity stays.
+Colour shaded(const Colour& colour, double light);
 
 }  // namespace microinjection

@@ -5,8 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "operation/display/lathe.h"
-#include "operation/display/shading.h"
+#include "operation/display/colour_map.h"
 
 namespace microinjection {
 namespace {

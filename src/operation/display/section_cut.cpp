@@ -1,7 +1,6 @@
 #include "operation/display/section_cut.h"
 
 #include <Eigen/Geometry>
-#include <cmath>
 #include <cstddef>
 #include <map>
 #include <utility>

@@ -22,4 +22,10 @@ struct TriangleSoup {
 /// Segments of two points each; display units.
 using LineList = std::vector<Eigen::Vector3d>;
 
+/// The surface that a profile sweeps in a full turn about the z axis.
+/// @param profile   points (r, z), r >= 0; with r to the right and z up, the outside is on the
+///                  right of its direction
+/// @param segments  sides of the polygon that replaces the circle, at least 3
+TriangleSoup lathe(const std::vector<Eigen::Vector2d>& profile, int segments);
+
 }  // namespace microinjection

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <queue>
 #include <random>
 #include <vector>

@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <sstream>
 #include <string>

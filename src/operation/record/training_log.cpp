@@ -1,6 +1,5 @@
 #include "operation/record/training_log.h"
 
-#include <cmath>
 #include <iomanip>
 #include <limits>
 #include <sstream>

@@ -1,8 +1,5 @@
 #include "operation/teleoperation/engagement.h"
 
-#include <algorithm>
-#include <limits>
-
 namespace microinjection {
 
 EngagementConfig EngagementConfig::read(ConfigReader reader) {

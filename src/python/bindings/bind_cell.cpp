@@ -17,7 +17,7 @@
 #include "python/bindings/module.h"
 #include "python/bindings/scene_value.h"
 #include "python/bindings/served_forces.h"
-#include "session/package_folder.h"
+#include "session/session_paths.h"
 
 namespace microinjection {
 

@@ -15,7 +15,7 @@
 #include "python/bindings/arrays.h"
 #include "python/bindings/module.h"
 #include "python/bindings/scene_value.h"
-#include "session/package_folder.h"
+#include "session/session_paths.h"
 
 namespace microinjection {
 

@@ -12,7 +12,7 @@
 #include "operation/control/injection_state.h"
 #include "python/bindings/arrays.h"
 #include "python/bindings/module.h"
-#include "session/package_folder.h"
+#include "session/session_paths.h"
 #include "trial/hand_trial.h"
 #include "trial/suction_trial.h"
 

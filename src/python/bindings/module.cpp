@@ -1,7 +1,7 @@
 #include "python/bindings/module.h"
 
 #include "base/errors.h"
-#include "session/package_folder.h"
+#include "session/session_paths.h"
 
 namespace py = pybind11;
 

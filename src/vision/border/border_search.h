@@ -1,10 +1,12 @@
 #pragma once
 
-#include <string>
+#include <optional>
 #include <vector>
 
 #include "vision/border/cell_border.h"
 #include "vision/frame/contrast_mode.h"
+#include "vision/frame/ellipse.h"
+#include "vision/frame/frame.h"
 
 namespace microinjection {
 
@@ -43,5 +45,10 @@ CellBorder faintBorder(const Frame& frame, const CellBorder& inner, double least
 /// Borders that are farther out, up to `limit` (ratio to the main one's radius): the last is the zona's outer border,
 /// one before it the inner.
 std::vector<CellBorder> bordersOutside(const Frame& frame, const CellBorder& main, double limit, ContrastMode mode);
+
+/// Radius over that of `base` of the clearest dark ring about it, between the ratios `low` and `high`; nothing without
+/// one. All directions together show a line that noise hides in each of them. Sectors with a pipette or a neighbour do
+/// not count, as long as they are less than half of all.
+std::optional<double> findFaintRing(const Frame& frame, const Ellipse& base, double low, double high);
 
 }  // namespace microinjection

@@ -5,8 +5,8 @@
 #include <sstream>
 
 #include "base/config_errors.h"
-#include "vision/calibration/least_distances.h"
 #include "vision/calibration/play.h"
+#include "vision/calibration/statistics.h"
 
 namespace microinjection {
 namespace {

@@ -9,7 +9,7 @@
 #include "base/config_errors.h"
 #include "base/config_reader.h"
 #include "base/errors.h"
-#include "base/user_data.h"
+#include "base/paths.h"
 
 namespace microinjection {
 namespace {

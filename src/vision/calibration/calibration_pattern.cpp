@@ -1,7 +1,5 @@
 #include "vision/calibration/calibration_pattern.h"
 
-#include <algorithm>
-
 #include "base/config_errors.h"
 
 namespace microinjection {

@@ -1,7 +1,6 @@
 #include "vision/calibration/calibration_run.h"
 
 #include <sstream>
-#include <string>
 
 namespace microinjection {
 namespace {

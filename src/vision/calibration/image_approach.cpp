@@ -1,7 +1,6 @@
 #include "vision/calibration/image_approach.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <sstream>
 

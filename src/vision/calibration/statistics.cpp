@@ -1,12 +1,18 @@
 #include "vision/calibration/statistics.h"
 
-#include <Eigen/Cholesky>
-#include <algorithm>
 #include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/students_t.hpp>
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
 #include <cmath>
 
 namespace microinjection {
+namespace {
+
+constexpr double kSmallest = 1e-3;  ///< of the median distance, below which a weight no longer grows
+
+}  // namespace
 
 double studentLimit(double confidence, double freedom) {
   return boost::math::quantile(boost::math::students_t(freedom), 0.5 + 0.5 * confidence);
@@ -27,6 +33,22 @@ double robustDeviation(const std::vector<double>& values) {
 bool isCovariance(const Eigen::MatrixXd& matrix) {
   if (!matrix.allFinite() || !matrix.isApprox(matrix.transpose(), 1e-6)) return false;
   return (matrix.diagonal().array() > 0).all() && Eigen::LLT<Eigen::MatrixXd>(matrix).info() == Eigen::Success;
+}
+
+Eigen::MatrixXd leastDistances(const Eigen::MatrixXd& regressors, const Eigen::MatrixXd& observed, int iterations) {
+  if (observed.rows() < regressors.cols()) return {};
+  Eigen::VectorXd root = Eigen::VectorXd::Ones(observed.rows());
+  Eigen::MatrixXd solution;
+  for (int i = 0; i < iterations; ++i) {
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(root.asDiagonal() * regressors);
+    if (qr.rank() < regressors.cols()) return {};
+    solution = qr.solve(root.asDiagonal() * observed);
+    const Eigen::VectorXd distance = (observed - regressors * solution).rowwise().norm();
+    const double median = medianOf({distance.data(), distance.data() + distance.size()});
+    if (median <= 0) break;
+    root = (distance.array() / median).max(kSmallest).rsqrt();
+  }
+  return solution;
 }
 
 }  // namespace microinjection

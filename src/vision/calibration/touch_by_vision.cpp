@@ -6,8 +6,6 @@
 #include <limits>
 #include <sstream>
 
-#include "vision/calibration/least_distances.h"
-
 namespace microinjection {
 namespace {
 

@@ -4,8 +4,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/errors.h"
-
 namespace microinjection {
 
 /// Rows are compared, because an image may have gaps between them.

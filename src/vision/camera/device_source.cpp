@@ -4,8 +4,6 @@
 #include <cctype>
 #include <cmath>
 #include <sstream>
-#include <string>
-#include <vector>
 
 #include "base/config_errors.h"
 

@@ -32,16 +32,6 @@ GreyRange rangeOf(std::vector<Level> levels, double tail) {
   return {lowest, static_cast<double>(*high)};
 }
 
-cv::Mat scaled(const cv::Mat& frame, double tail, double white, int type) {
-  const cv::Mat grey = toGrey(frame);
-  const GreyRange range = greyRange(grey, tail);
-  cv::Mat result;
-  if (range.high <= range.low) return cv::Mat(grey.size(), type, cv::Scalar(0.5 * white));
-  const double scale = white / (range.high - range.low);
-  grey.convertTo(result, type, scale, -scale * range.low);
-  return result;
-}
-
 }  // namespace
 
 cv::Mat toGrey(const cv::Mat& frame) {
@@ -60,8 +50,14 @@ GreyRange greyRange(const cv::Mat& grey, double tail) {
   return rangeOf(sampled<unsigned short>(grey), tail);
 }
 
-cv::Mat toGreyFloat(const cv::Mat& frame, double tail) { return scaled(frame, tail, 1, CV_32F); }
-
-cv::Mat toGrey8(const cv::Mat& frame, double tail) { return scaled(frame, tail, 255, CV_8U); }
+cv::Mat toGrey8(const cv::Mat& frame, double tail) {
+  const cv::Mat grey = toGrey(frame);
+  const GreyRange range = greyRange(grey, tail);
+  if (range.high <= range.low) return cv::Mat(grey.size(), CV_8U, cv::Scalar(128));
+  const double scale = 255 / (range.high - range.low);
+  cv::Mat result;
+  grey.convertTo(result, CV_8U, scale, -scale * range.low);
+  return result;
+}
 
 }  // namespace microinjection

@@ -19,11 +19,8 @@ cv::Mat toGrey(const cv::Mat& frame);
 /// not move them. Of a grey image of 8 or 16 bit, sampled on a grid of up to about 256 x 256 pixels.
 GreyRange greyRange(const cv::Mat& grey, double tail = 0.001);
 
-/// A frame of any depth and colour as CV_32F. 0 is the low and 1 the high end of its range; values
-/// beyond are kept. A frame of one level becomes 0.5.
-cv::Mat toGreyFloat(const cv::Mat& frame, double tail = 0.001);
-
-/// The same as CV_8U: 0 is the low and 255 the high end of its range, values beyond are cut.
+/// A frame of any depth and colour as CV_8U. 0 is the low and 255 the high end of its range; values beyond are cut. A
+/// frame of one level becomes grey.
 cv::Mat toGrey8(const cv::Mat& frame, double tail = 0.001);
 
 }  // namespace microinjection

@@ -8,7 +8,6 @@
 #include <iterator>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
-#include <vector>
 
 namespace microinjection {
 namespace {

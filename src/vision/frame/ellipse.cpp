@@ -2,7 +2,6 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <cmath>
 
 #include "base/median.h"
 #include "vision/frame/robust_loss.h"

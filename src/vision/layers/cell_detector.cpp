@@ -1,11 +1,9 @@
 #include "vision/layers/cell_detector.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "vision/layers/bubble.h"
 #include "vision/layers/cell_candidates.h"
-#include "vision/layers/cell_layers.h"
 
 namespace microinjection {
 namespace {

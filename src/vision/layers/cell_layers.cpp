@@ -1,15 +1,59 @@
 #include "vision/layers/cell_layers.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 
 #include "vision/border/border_search.h"
+#include "vision/frame/ellipse.h"
+#include "vision/frame/frame.h"
+#include "vision/frame/polar_map.h"
 #include "vision/layers/fitted_layers.h"
-#include "vision/layers/lines_outside.h"
 #include "vision/layers/zona_inner.h"
 
 namespace microinjection {
 namespace {
+
+constexpr int kOwnLine = 3;             // px, that the line of a border is wide, to both sides
+constexpr int kLeastReach = 15;         // px
+constexpr double kReachOfRadius = 0.1;  // of the radius
+constexpr int kThird = 2;
+constexpr double kSlopeSmoothing = 1;  // px
+
+/// Size of a sector's mean slope at a column.
+double slopeOfSector(const PolarMap& map, int sector, int column) {
+  double sum = 0;
+  for (int ray = sector * kRaysOfAveragedSector; ray < (sector + 1) * kRaysOfAveragedSector; ++ray)
+    sum += map.slope().at<float>(ray, column);
+  return std::abs(sum) / kRaysOfAveragedSector;
+}
+
+double largestSlope(const PolarMap& map, int sector, int first, int last) {
+  double largest = 0;
+  for (int column = first; column < last; ++column) largest = std::max(largest, slopeOfSector(map, sector, column));
+  return largest;
+}
+
+/// How clear lines outside of a border are, over the border's own: the third of twelve sectors, so that pipettes do not
+/// count. Lines are outside from 6 px to a tenth of the radius, at least 15 px. DIC shades a line on two sides only,
+/// and an ellipse that is on the outer line of one side and on the inner line of the other has the outer one outside.
+/// There it is above 0.25; about the right border it is below 0.2.
+double linesOutside(const Frame& frame, const Ellipse& border) {
+  const int reach = std::max(kLeastReach, static_cast<int>(kReachOfRadius * 0.5 * border.meanDiameter()));
+  const int columns = kOwnLine + reach + 1;
+  const PolarMap map(frame, border,
+                     {-kOwnLine, static_cast<double>(reach), columns, kAveragedSectors * kRaysOfAveragedSector},
+                     kSlopeSmoothing);
+  double own = 0;
+  std::array<double, kAveragedSectors> outside{};
+  for (int sector = 0; sector < kAveragedSectors; ++sector) {
+    own = std::max(own, largestSlope(map, sector, 0, 2 * kOwnLine + 1));
+    outside[sector] = largestSlope(map, sector, 3 * kOwnLine, columns);
+  }
+  std::nth_element(outside.begin(), outside.begin() + kThird, outside.end(), std::greater<>());
+  return own > 0 ? outside[kThird] / own : 0;
+}
 
 constexpr int kFineRays = 180;
 constexpr double kOutermost = 1.65;                                 // of the ooplasm's radius, a zona's outer border

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 #include "vision/border/cell_border.h"
 #include "vision/frame/contrast_mode.h"
 

@@ -1,11 +1,9 @@
 #include "vision/layers/cell_size.h"
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "base/median.h"
-#include "vision/layers/zona_thickness.h"
 
 namespace microinjection {
 namespace {
@@ -25,6 +23,14 @@ MeasuredLength combine(const std::vector<MeasuredLength>& readings) {
   const double scatter = 1.4826 * upperMedian(differences);  // standard deviation of normal readings
   const double count = static_cast<double>(readings.size());
   return {median, kNormal95 * std::sqrt(M_PI / 2 * scatter * scatter / count + stated)};
+}
+
+constexpr double kRim = 1.25;  // over the mean width of the ooplasm's dark rim: one border and its blur
+
+/// Whether a border was not seen at all, or within the ooplasm's rim.
+bool isWithinRim(const CellBorder& border, const CellBorder& ooplasm) {
+  if (!border.finding.hasValues()) return true;
+  return (border.ellipse.meanDiameter() - ooplasm.ellipse.meanDiameter()) / 2 < kRim * ooplasm.rim;
 }
 
 }  // namespace
@@ -63,6 +69,20 @@ std::optional<CellSizeInImages> CellSizeReadings::measure(std::size_t least, std
   size.diameter = combine(diameters);
   if (2 * zonas.size() > readings_.size()) size.zona_thickness = combine(zonas);
   return size;
+}
+
+std::optional<ZonaThickness> zonaThickness(const CellDetection& cell) {
+  if (!cell.zona_outer.finding.isFound()) return std::nullopt;
+  const CellBorder* inner = &cell.zona_inner;
+  double hidden = 0;  // px, standard deviation of the place in the rim
+  if (!inner->finding.isFound()) {
+    if (!cell.ooplasm.finding.isFound() || !isWithinRim(*inner, cell.ooplasm)) return std::nullopt;
+    inner = &cell.ooplasm;
+    hidden = kRim * cell.ooplasm.rim / kNormal95;
+  }
+  const double difference = cell.zona_outer.ellipse.meanDiameter() - inner->ellipse.meanDiameter();
+  const double borders = std::hypot(diameterDeviation(cell.zona_outer), diameterDeviation(*inner)) / 2;
+  return ZonaThickness{difference / 2, std::hypot(borders, hidden)};
 }
 
 }  // namespace microinjection

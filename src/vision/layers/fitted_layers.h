@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 #include "vision/frame/contrast_mode.h"
 #include "vision/layers/cell_layers.h"
 

@@ -2,7 +2,6 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "vision/layers/layer_solver.h"

@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <cmath>
-#include <string>
 
 #include "vision/frame/contrast_mode.h"
 #include "vision/frame/ellipse.h"

@@ -1,6 +1,6 @@
 #include "vision/measurement/sharpest_plane.h"
 
-#include "vision/measurement/cell_sharpness.h"
+#include "vision/measurement/sharpness.h"
 
 namespace microinjection {
 

@@ -1,10 +1,9 @@
 #include "vision/measurement/touch_search.h"
 
-#include <algorithm>
 #include <cmath>
 #include <sstream>
 
-#include "vision/calibration/least_distances.h"
+#include "vision/calibration/statistics.h"
 
 namespace microinjection {
 namespace {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <string>
 
 #include "base/config_reader.h"
 #include "vision/camera/camera_view.h"

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <optional>
 
-#include "base/range.h"
 #include "vision/camera/camera_view.h"
 #include "vision/microscope/microscope_scene.h"
 #include "vision/microscope/random_draw.h"

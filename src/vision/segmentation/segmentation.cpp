@@ -9,7 +9,6 @@ namespace microinjection {
 namespace {
 
 constexpr int kLeastPixels = 4;  // of a region
-constexpr double kInside = 0.5;  // probability
 
 /// The pixels of a mask and of the holes in it.
 cv::Mat filled(const cv::Mat& mask) {
@@ -64,17 +63,6 @@ cv::Mat Segmentation::mask(std::initializer_list<PixelClass> classes) const {
   outside(inside_).setTo(0);
   result.setTo(0, outside);
   return result;
-}
-
-cv::Mat Segmentation::frameMask(std::initializer_list<PixelClass> classes) const {
-  const cv::Point2d corner = fromFrame({0, 0});
-  const double step = 1 / framePixels();
-  cv::Mat wide;
-  // What lies within half an output pixel of the frame's border is in the frame, too.
-  cv::warpAffine(probability(classes)(inside_), wide,
-                 cv::Matx23d(step, 0, corner.x - inside_.x, 0, step, corner.y - inside_.y), frame_,
-                 cv::INTER_LINEAR | cv::WARP_INVERSE_MAP, cv::BORDER_REPLICATE);
-  return wide > kInside;
 }
 
 std::vector<ClassRegion> Segmentation::regions(std::initializer_list<PixelClass> classes, double least, double inside,

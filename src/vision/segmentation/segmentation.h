@@ -46,8 +46,6 @@ class Segmentation {
   const cv::Mat& classes() const { return classes_; }
   /// 255 where the likeliest class is one of these.
   cv::Mat mask(std::initializer_list<PixelClass> classes) const;
-  /// The same in the frame's size, from the interpolated probabilities: 255 where they exceed 1/2.
-  cv::Mat frameMask(std::initializer_list<PixelClass> classes) const;
 
   /// Connected regions of a probability above `inside`, the largest first. Smaller ones than `least` (px^2 of the
   /// frame) and than 4 output pixels are left out. An area counts the probabilities along the border, so that it is

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <opencv2/core/mat.hpp>
-#include <string>
 
 #include "vision/frame/contrast_mode.h"
 #include "vision/microscope/texture.h"

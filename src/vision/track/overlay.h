@@ -1,7 +1,6 @@
 #pragma once
 
 #include <opencv2/core.hpp>
-#include <vector>
 
 #include "vision/dimple/indentation_contour.h"
 #include "vision/layers/cell_detector.h"

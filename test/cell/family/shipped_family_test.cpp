@@ -11,6 +11,7 @@
 #include "cell/family/family_reference.h"
 #include "cell/model/scene.h"
 #include "cell/surrogate/axis_ray.h"
+#include "cell/surrogate/training_ray.h"
 
 namespace microinjection {
 namespace {

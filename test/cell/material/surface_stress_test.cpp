@@ -6,7 +6,6 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "cell/material/surface_stress_field.h"
 #include "cell/material/volume.h"
 #include "material_cases.h"
 

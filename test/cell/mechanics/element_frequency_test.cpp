@@ -1,4 +1,4 @@
-#include "cell/mechanics/element_frequency.h"
+#include "cell/mechanics/largest_frequency.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

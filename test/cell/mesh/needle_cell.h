@@ -1,6 +1,6 @@
 #pragma once
 
-#include "cell/mesh/cell_mesh_config.h"
+#include "cell/mesh/mesh_config.h"
 
 namespace microinjection {
 

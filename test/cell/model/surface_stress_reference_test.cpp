@@ -9,7 +9,6 @@
 #include <map>
 
 #include "cell/material/surface_stress.h"
-#include "cell/material/surface_stress_field.h"
 #include "cell/model/cell_problem.h"
 #include "cell/model/scene_mesh.h"
 #include "cell/model/test_scenes.h"

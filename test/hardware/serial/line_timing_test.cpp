@@ -1,4 +1,4 @@
-#include "hardware/serial/line_timing.h"
+#include "hardware/serial/emulated_line.h"
 
 #include <gtest/gtest.h>
 

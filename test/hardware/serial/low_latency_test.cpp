@@ -1,4 +1,4 @@
-#include "hardware/serial/low_latency.h"
+#include "hardware/serial/line_mode.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

@@ -2,9 +2,9 @@
 
 #include "operation/console/camera_tasks.h"
 #include "operation/console/console_parts.h"
+#include "operation/console/guard_margins.h"
 #include "operation/console/hand_lines.h"
 #include "operation/console/pixel_goal.h"
-#include "operation/console/score_lines.h"
 
 namespace microinjection {
 namespace {

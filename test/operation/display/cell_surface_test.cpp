@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "operation/display/shading.h"
+#include "operation/display/colour_map.h"
 #include "soup_measures.h"
 
 namespace microinjection {

@@ -1,4 +1,4 @@
-#include "vision/border/faint_ring.h"
+#include "vision/border/border_search.h"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "benchmark/common/simulated_needle.h"
 #include "vision/calibration/calibrate.h"
-#include "vision/calibration/simulated_needle.h"
 
 namespace microinjection {
 namespace {

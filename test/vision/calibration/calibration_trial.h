@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "benchmark/common/simulated_needle.h"
 #include "vision/calibration/calibrate.h"
-#include "vision/calibration/simulated_needle.h"
 
 namespace microinjection {
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "vision/calibration/simulated_needle.h"
+#include "benchmark/common/simulated_needle.h"
 
 namespace microinjection {
 namespace {

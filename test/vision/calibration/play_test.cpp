@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "vision/calibration/simulated_needle.h"
+#include "benchmark/common/simulated_needle.h"
 
 namespace microinjection {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "vision/calibration/simulated_needle.h"
+#include "benchmark/common/simulated_needle.h"
 
 namespace microinjection {
 namespace {

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <random>
 
-#include "vision/layers/zona_thickness.h"
-
 namespace microinjection {
 namespace {
 

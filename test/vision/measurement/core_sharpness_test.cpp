@@ -1,4 +1,4 @@
-#include "vision/measurement/core_sharpness.h"
+#include "vision/measurement/sharpness.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "vision/pipette/tip_sharpness.h"
+#include "benchmark/common/tip_sharpness.h"
 
 #include <gtest/gtest.h>
 

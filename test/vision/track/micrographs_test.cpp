@@ -11,10 +11,10 @@
 #include <cstdlib>
 #include <opencv2/imgcodecs.hpp>
 
+#include "benchmark/common/tip_sharpness.h"
 #include "vision/calibration/tip_focus.h"
 #include "vision/layers/cell_detector.h"
 #include "vision/pipette/pipette_detector.h"
-#include "vision/pipette/tip_sharpness.h"
 
 namespace microinjection {
 namespace {

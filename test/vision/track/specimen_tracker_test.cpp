@@ -4,7 +4,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "vision/layers/zona_thickness.h"
+#include "vision/layers/cell_size.h"
 #include "vision/microscope/microscope.h"
 
 namespace microinjection {

@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <optional>
 #include <regex>
-#include <vector>
 
 #include "base/parse_number.h"
 

@@ -1,7 +1,6 @@
 #include "hardware/devices/scientifica/scientifica_protocol.h"
 
 #include <algorithm>
-#include <cmath>
 #include <regex>
 
 namespace microinjection {

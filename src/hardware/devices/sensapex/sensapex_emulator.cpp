@@ -1,7 +1,6 @@
 #include "hardware/devices/sensapex/sensapex_emulator.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "base/errors.h"

@@ -1,7 +1,6 @@
 #include "hardware/devices/zaber/zaber_driver.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 

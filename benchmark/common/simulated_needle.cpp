@@ -1,4 +1,4 @@
-#include "vision/calibration/simulated_needle.h"
+#include "benchmark/common/simulated_needle.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "operation/display/lathe.h"
+#include "operation/display/triangle_soup.h"
 
 #include <cmath>
 #include <cstddef>

@@ -3,6 +3,7 @@
 #include <opencv2/core.hpp>
 
 #include "vision/frame/frame.h"
+#include "vision/layers/cell_detector.h"
 
 namespace microinjection {
 
@@ -20,5 +21,11 @@ struct TipInImage {
 /// in the focus: with the walls (tipSharpness) the sharpest plane of a tip in bright field is 1.3 um
 /// beside its focus. The core has no such fringes. 0 for a window outside of the image.
 double coreSharpness(const Frame& frame, const TipInImage& window);
+
+/// Sharpness of a cell's image, per squared pixel of the frame's noise: mean square of the second
+/// derivatives of the grey value inside of the ooplasm's border. It is largest in the plane of the
+/// granules there. The borders themselves do not show the focus: that of a transparent zona is
+/// faintest where it is in focus. 0 for a cell that has no values.
+double cellSharpness(const Frame& frame, const CellDetection& cell);
 
 }  // namespace microinjection

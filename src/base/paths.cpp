@@ -1,9 +1,16 @@
-#include "base/absolute_path.h"
+#include "base/paths.h"
 
 #include <cstdlib>
 #include <filesystem>
 
 namespace microinjection {
+
+std::string userDataFile(const std::string& name) {
+  const char* data = std::getenv("XDG_DATA_HOME");
+  const char* home = std::getenv("HOME");
+  const std::string base = data && *data ? data : std::string(home ? home : "/tmp") + "/.local/share";
+  return base + "/cell_microinjection/" + name;
+}
 
 std::string absolutePath(const std::string& path, const std::string& folder) {
   const char* home = std::getenv("HOME");
