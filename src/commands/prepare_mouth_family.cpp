@@ -17,7 +17,6 @@
 #include "commands/family_plan.h"
 #include "commands/path_store.h"
 #include "commands/run_tasks.h"
-#include "commands/worker.h"
 
 namespace microinjection {
 namespace {
