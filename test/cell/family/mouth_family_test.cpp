@@ -182,7 +182,7 @@ TEST_F(MadeUpTongues, HaveTheFormOfTheSolvedOnes) {
   const Eigen::Vector4d x(0.3, -0.6, 0.5, 0.2);
   const FamilyTongue tongue = TongueFamily(data_).tongue(x);
   const TongueTouch touch = touchOf(data_.family().member(x));
-  const double suction = 0.1, growth = growthInBore(touch.bore_radius),
+  const double suction = 0.1, growth = tongueGrowth(data_.family().member(x)),
                rise = touch.bore_radius * suction * std::exp(0.2 * x[0] - 0.1 * x[1] + growth);
   EXPECT_NEAR(tongue.at(suction).length, touch.length + rise, 1e-4 * rise);
   EXPECT_NEAR(tongue.end(), std::exp(-1 + 0.1 * x[2]), 1e-4);
