@@ -49,8 +49,6 @@ Eigen::MatrixXd coefficientsOf(const Eigen::MatrixXd& values) {
 
 }  // namespace
 
-double growthInBore(double bore_radius) { return 1.4 * bore_radius * bore_radius; }
-
 Eigen::VectorXd tongueFractions() {
   Eigen::VectorXd result(kNodes);
   for (int i = 0; i < kNodes; ++i) {
@@ -79,8 +77,10 @@ TongueTouch::TongueTouch(double bore, double edge_radius) : bore_radius(bore) {
   volume = 2 * M_PI / 3 * (1 - std::pow(1 - radius * radius, 1.5)) - M_PI * radius * radius * plane;
 }
 
-FamilyTongue::FamilyTongue(const TongueTouch& touch, const Eigen::MatrixXd& curves, double error, double end_error)
+FamilyTongue::FamilyTongue(const TongueTouch& touch, double growth, const Eigen::MatrixXd& curves, double error,
+                           double end_error)
     : touch_(touch),
+      growth_(growth),
       surface_(coefficientsOf(curves.rightCols(2 * TongueCurves::kPlaces))),
       error_(std::hypot(error, kMeshOfRise)),
       end_error_(end_error),
@@ -103,8 +103,8 @@ DrawnTongue FamilyTongue::at(double suction) const {
   basis(suction, value, slope);
   const Eigen::Matrix<double, 1, 3> at = value.transpose() * coefficients_, rise = slope.transpose() * coefficients_;
   const double by_suction = std::sqrt(suction / strongest_) / (1 - kLowestRoot);  // suction d(coordinate)/d(suction)
-  const double a = touch_.bore_radius, growth = growthInBore(a), length = a * std::exp(at[0] + growth),
-               volume = a * a * a * std::exp(at[1] + growth);
+  const double a = touch_.bore_radius, length = a * std::exp(at[0] + growth_),
+               volume = a * a * a * std::exp(at[1] + growth_);
   result.length = touch_.length + length * suction;
   result.length_slope = length * (1 + by_suction * rise[0]);
   result.volume = touch_.volume + volume * suction;

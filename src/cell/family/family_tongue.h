@@ -22,9 +22,9 @@ struct TongueCurves {
   static constexpr int kNodes = 12;
   static constexpr int kPlaces = 30;  ///< of the surface
   enum Column {
-    kLogLength,  ///< log of the length's rise above the touch, over a s, less growthInBore(a)
+    kLogLength,  ///< log of the length's rise above the touch, over a s, less tongueGrowth()
     kLogEnd,     ///< log of the suction at which the equilibria end, in each row
-    kLogVolume,  ///< log of the volume's rise above the touch, over a^3 s, less growthInBore(a)
+    kLogVolume,  ///< log of the volume's rise above the touch, over a^3 s, less tongueGrowth()
     kSeal,       ///< its radius over that of the touch
     kEnds,       ///< 1: the equilibria end there; 0: the solution does
     kSurface,    ///< displacements (r, z) of tonguePlaces() over a
@@ -40,11 +40,6 @@ Eigen::VectorXd tongueFractions();
 /// touch, dense about it. `touch`: angle at which the mouth touches the cell.
 Eigen::VectorXd tonguePlaces(double touch);
 
-/// Logarithm of how much more the tongue rises than in a half-space, roughly, as the bore's radius over the cell's
-/// grows. Without it a family needs more members in that direction than in all others: left out of 39 each, the rise of
-/// a member was 1.5 % off (rms), and with it 1.0 %.
-double growthInBore(double bore_radius);
-
 /// The strongest suction that is served, over that at which the equilibria end: the tongue's slope is infinite there.
 constexpr double kServedSuction = 0.95;
 
@@ -56,7 +51,7 @@ struct TongueTouch {
 
 /// A cell's tongue as a function of the suction, made by TongueFamily.
 ///
-///     L(s) = L0 + a s exp(g(sqrt(s)) + 1.4 a^2)     L0: of the touch, exact; g: a polynomial, nearly constant
+///     L(s) = L0 + a s exp(g(sqrt(s)) + growth)     L0: of the touch, exact; g: a polynomial, nearly constant
 ///
 /// L / (a s) would be constant for a half-space (Theret and others 1988); so g holds what the cell's curvature, the lip
 /// and the large strain make of it, and is smooth from needle bores of a fiftieth of the cell to half of it. log L over
@@ -64,9 +59,10 @@ struct TongueTouch {
 /// at() takes well below a microsecond and allocates nothing; several threads may use it at once.
 class FamilyTongue {
  public:
+  /// @param growth see tongueGrowth()
   /// @param curves see TongueCurves
   /// @param error of g, to be expected; `end_error`: same, of the end
-  FamilyTongue(const TongueTouch& touch, const Eigen::MatrixXd& curves, double error, double end_error);
+  FamilyTongue(const TongueTouch& touch, double growth, const Eigen::MatrixXd& curves, double error, double end_error);
 
   /// Suction over modulus to which the tongue is known: kServedSuction of end().
   double strongest() const { return strongest_; }
@@ -89,6 +85,7 @@ class FamilyTongue {
   void basis(double suction, Basis& value, Basis& slope) const;
 
   TongueTouch touch_;
+  double growth_;
   Eigen::Matrix<double, TongueCurves::kNodes, 3> coefficients_;  ///< of length, volume and seal
   Eigen::MatrixXd surface_;                                      ///< coefficients
   double error_, end_error_, end_, strongest_;

@@ -140,7 +140,9 @@ MouthFamilyData::Prediction MouthFamilyData::predict(const Eigen::VectorXd& coor
   Prediction result{Eigen::MatrixXd::Zero(first.curves.rows(), first.curves.cols()), Eigen::Vector2d::Zero()};
   for (std::size_t i = 0; i < members_.size(); ++i)
     result.curves += weights[static_cast<Eigen::Index>(i)] * members_[i].curves;
-  result.error = kriging_->deviation(coordinates) * Eigen::Vector2d(per_deviation_[0].common, per_deviation_[1].common);
+  const double deviation = kriging_->deviation(coordinates);
+  for (const int column : {0, 1})
+    result.error[column] = std::max(deviation * per_deviation_[column].common, left_out_[column].common);
   return result;
 }
 

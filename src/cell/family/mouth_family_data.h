@@ -25,7 +25,10 @@ class MouthFamilyData {
  public:
   struct Prediction {
     Eigen::MatrixXd curves;
-    Eigen::Vector2d error;  ///< to be expected of the first columns; one of ten values has more
+    /// To be expected of the first columns: that of members that are left out, which one of ten has more than; larger,
+    /// in proportion, where kriging is less certain. Not smaller where it is more certain, because it was too sure of
+    /// members with a shell.
+    Eigen::Vector2d error;
   };
 
   explicit MouthFamilyData(MouthFamily family)

@@ -26,7 +26,8 @@ TongueFamily TongueFamily::load(const std::string& family_file) {
 
 FamilyTongue TongueFamily::tongue(const Eigen::VectorXd& coordinates) const {
   const MouthFamilyData::Prediction found = data_.predict(coordinates);
-  return {touchOf(data_.family().member(coordinates)), found.curves, found.error[0], found.error[1]};
+  const Scene member = data_.family().member(coordinates);
+  return {touchOf(member), tongueGrowth(member), found.curves, found.error[0], found.error[1]};
 }
 
 FamilyTongue TongueFamily::tongue(const Scene& scene) const { return tongue(data_.coordinatesOf(scene)); }

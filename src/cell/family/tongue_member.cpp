@@ -38,6 +38,7 @@ class TonguePath {
  public:
   TonguePath(const Scene& scene, double level)
       : touch_(touchOf(scene)),
+        growth_(tongueGrowth(scene)),
         places_(M_PI - tonguePlaces(std::asin(touch_.radius)).array()),
         problem_(scene, makeSceneMesh<2>(scene, level), ElementKind::kP2P1) {}
 
@@ -67,8 +68,8 @@ class TonguePath {
     if (!(length > 0 && volume > 0)) return;  // where the seal steps it may take more than little suction adds
     const SectionOutline outline = sectionOutline(problem_);
     Eigen::VectorXd column = Eigen::VectorXd::Zero(TongueCurves::kColumns);
-    column[TongueCurves::kLogLength] = std::log(length / (a * s)) - growthInBore(a);
-    column[TongueCurves::kLogVolume] = std::log(volume / (a * a * a * s)) - growthInBore(a);
+    column[TongueCurves::kLogLength] = std::log(length / (a * s)) - growth_;
+    column[TongueCurves::kLogVolume] = std::log(volume / (a * a * a * s)) - growth_;
     column[TongueCurves::kSeal] = held.seal_radius / touch_.radius;
     for (Eigen::Index i = 0; i < places_.size(); ++i)
       column.segment<2>(TongueCurves::kSurface + 2 * i) = displacementAt(outline, places_[i]) / a;
@@ -77,6 +78,7 @@ class TonguePath {
   }
 
   TongueTouch touch_;
+  double growth_;
   Eigen::VectorXd places_;  ///< rad, from the upper pole
   CellProblem<2> problem_;
   HeldCell rest_;
@@ -87,6 +89,16 @@ class TonguePath {
 TongueTouch touchOf(const Scene& scene) {
   const Scene::Mouth& mouth = *scene.holding_pipette.mouth;
   return {mouth.inner_radius / scene.radius(), mouth.edge_radius / scene.radius()};
+}
+
+double tongueGrowth(const Scene& member) {
+  const double bore = member.holding_pipette.mouth->inner_radius / member.radius();
+  const double growth = 1.4 * bore * bore;
+  if (member.cell.layers.size() < 2) return growth;
+  const Scene::Layer& inside = member.cell.layers[1];
+  const double thickness = (1 - inside.outer_radius / member.radius()) / bore, squared = thickness * thickness,
+               modulus = inside.material.young_modulus / member.cell.material().young_modulus;
+  return growth - std::log(modulus + (1 - modulus) * squared / (squared + 0.4));
 }
 
 MouthMember solveTongue(const MouthFamily& family, const Eigen::VectorXd& coordinates) {

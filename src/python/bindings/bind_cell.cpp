@@ -167,7 +167,7 @@ py::dict indentScene(const SceneValue& scene, const py::object& depths, const py
   return result;
 }
 
-py::dict aspirateScene(const SceneValue& scene, const py::object& pressures, double tolerance) {
+py::dict aspirateScene(const SceneValue& scene, const py::object& pressures, double tolerance, double finest) {
   std::vector<double> wanted;
   if (!pressures.is_none()) {
     const Eigen::VectorXd given = vectorOf("pressures", pressures);
@@ -176,8 +176,10 @@ py::dict aspirateScene(const SceneValue& scene, const py::object& pressures, dou
     wanted = {scene.scene().holding_pipette.mouth->pressure};
   }
   if (!(tolerance > 0)) throw ConfigError("tolerance: must be > 0");
+  if (!(finest >= 1 && finest <= 6)) throw ConfigError("finest: must be from 1 to 6");
   ConvergedTongueConfig config;
   config.tolerance = tolerance;
+  config.finest = finest;
   std::vector<TonguePoint> points;
   {
     const py::gil_scoped_release others;
@@ -318,7 +320,7 @@ void bindCell(py::module_& module) {
       .def_property_readonly("end", &TongueValue::end)
       .def_property_readonly("equilibrium_ends", &TongueValue::equilibriumEnds);
   module.def("aspirate", &aspirateScene, py::arg("scene"), py::arg("pressures") = py::none(), py::kw_only(),
-             py::arg("tolerance") = 0.005);
+             py::arg("tolerance") = 0.005, py::arg("finest") = 3.0);
 }
 
 }  // namespace microinjection

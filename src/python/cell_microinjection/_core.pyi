@@ -64,7 +64,9 @@ def indent(scene: Scene, depths: ArrayLike, *, lateral: Optional[ArrayLike] = ..
 
 # Arrays (n,) of pressure, tongue_length, tongue_volume, seal_radius, clamping_force, error_estimate, converged; lists of
 # reason and outline, (m, 2): r and z of the deformed surface, m, or None. Pressures: Pa, gauge; default: the scene's.
-def aspirate(scene: Scene, pressures: Optional[ArrayLike] = ..., *, tolerance: float = ...) -> dict[str, Any]: ...
+# finest: halvings of the elements at the lip that may be tried.
+def aspirate(scene: Scene, pressures: Optional[ArrayLike] = ..., *, tolerance: float = ...,
+             finest: float = ...) -> dict[str, Any]: ...
 
 
 class FamilyTongue:

@@ -71,17 +71,26 @@ TEST_F(ShippedTongues, ServeAThickerWall) {
   EXPECT_NEAR(family().tongue(thicker).at(0.1).length, length, 1e-9 * length);
 }
 
-TEST_F(ShippedTongues, HaveTheLengthsOfASolutionWithinTheToldError) {
-  const Scene scene = mouseHeld();
-  const FamilyTongue tongue = family().tongue(scene);
-  const std::vector<double> suctions = {0, 0.02, 0.1, 0.25};
+/// Of the family that has the scene.
+void expectTongues(const Scene& scene, const std::vector<double>& suctions) {
+  std::string reason;
+  const auto tongue = findFamilyTongue(kFamilies, scene, reason);
+  ASSERT_TRUE(tongue) << reason;
   const std::vector<double> solved = tongueCurve(scene, suctions, 0);
   ASSERT_EQ(solved.size(), suctions.size());
   for (std::size_t i = 0; i < suctions.size(); ++i) {
-    const DrawnTongue at = tongue.at(suctions[i]);
+    const DrawnTongue at = tongue->at(suctions[i]);
     EXPECT_LT(at.expected_error, 0.05);
     EXPECT_NEAR(at.length, solved[i], at.expected_error * solved[i]) << suctions[i];
   }
+}
+
+TEST_F(ShippedTongues, HaveTheLengthsOfASolutionWithinTheToldError) {
+  expectTongues(mouseHeld(), {0, 0.02, 0.1, 0.25});
+}
+
+TEST_F(ShippedTongues, HaveThoseOfACellWithAZona) {
+  expectTongues(loadScene(MICROINJECTION_SOURCE_DIR "/config/cells/human_oocyte_held.yaml"), {0, 0.02, 0.1, 0.25});
 }
 
 TEST_F(ShippedTongues, HaveTheSurfaceAndTheVolumeOfASolution) {
@@ -182,7 +191,7 @@ TEST_F(MadeUpTongues, HaveTheFormOfTheSolvedOnes) {
   const Eigen::Vector4d x(0.3, -0.6, 0.5, 0.2);
   const FamilyTongue tongue = TongueFamily(data_).tongue(x);
   const TongueTouch touch = touchOf(data_.family().member(x));
-  const double suction = 0.1, growth = growthInBore(touch.bore_radius),
+  const double suction = 0.1, growth = tongueGrowth(data_.family().member(x)),
                rise = touch.bore_radius * suction * std::exp(0.2 * x[0] - 0.1 * x[1] + growth);
   EXPECT_NEAR(tongue.at(suction).length, touch.length + rise, 1e-4 * rise);
   EXPECT_NEAR(tongue.end(), std::exp(-1 + 0.1 * x[2]), 1e-4);
