@@ -125,7 +125,8 @@ py::dict identifyTongues(const py::object& pressures, const py::object& lengths,
 
 Identification withModulus(const std::tuple<double, double, double, bool>& told) {
   const auto [value, low, high, bounded] = told;
-  if (!(low > 0 && low < value && value < high)) throw ConfigError("young_modulus: must lie within its interval, above 0");
+  if (!(low > 0 && low < value && value < high))
+    throw ConfigError("young_modulus: must lie within its interval, above 0");
   Identification found;
   found.estimates = {{"young_modulus", "Pa", value, low, high, bounded}};
   return found;
