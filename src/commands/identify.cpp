@@ -167,6 +167,15 @@ std::map<std::string, std::string> columnsOf(const IdentifyArguments& arguments,
   return columns;
 }
 
+/// The force of a cell that suction holds is that of a glued one within Scene::kGluedError.
+void widen(Identification& force) {
+  for (Estimate& estimate : force.estimates) {
+    if (estimate.name != "young_modulus") continue;
+    estimate.low /= 1 + Scene::kGluedError;
+    estimate.high *= 1 + Scene::kGluedError;
+  }
+}
+
 Identification fitTongue(const IdentifyArguments& arguments, const Scene& scene) {
   const TongueRecord record = readTongueRecord(arguments.tongue, columnsOf(arguments, true));
   for (const std::string& note : record.notes) std::printf("%s: %s\n", arguments.tongue.c_str(), note.c_str());
@@ -211,6 +220,7 @@ int run(int argc, char** argv) {
             std::make_shared<const std::vector<RivalCell>>(rivalCells(loadFamilies(arguments.families), *scene));
       }
       fits.emplace_back(arguments.models[i], identify(curve, laws[i], config));
+      if (tongue) widen(fits.back().second);
       printIdentification(arguments.models[i], fits.back().second);
     } catch (const ConfigError& error) {
       std::cerr << "identify: " << arguments.record << ": " << arguments.models[i] << ": " << error.what() << '\n';
@@ -225,12 +235,7 @@ int run(int argc, char** argv) {
     std::printf("the information criterion prefers: %s\n", fits[static_cast<std::size_t>(best)].first.c_str());
   }
   if (!tongue) return conclude(arguments, arguments.record, fits, &curve);
-  Identification& force = fits.front().second;
-  for (Estimate& estimate : force.estimates) {  // a held cell's force is that of a glued one within this
-    if (estimate.name != "young_modulus") continue;
-    estimate.low /= 1 + Scene::kGluedError;
-    estimate.high *= 1 + Scene::kGluedError;
-  }
+  const Identification& force = fits.front().second;
   if (!force.consistent() || !tongue->consistent()) {
     std::cerr << "identify: " << (force.consistent() ? "the tongues are not" : "the force is not")
               << " that of the scene's cell: the moduli are not joined\n";

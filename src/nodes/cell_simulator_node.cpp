@@ -94,7 +94,7 @@ void CellSimulatorNode::step(const Cycle::Tick& tick) {
     force_.publishInvalid(wrench);
   }
   publishContact(tick.now);
-  if (bore_) publishBore(tick.now);
+  if (bore_ && pose) publishBore(tick.now);
   state_publisher_->step(moment(tick.now, force));
 }
 
@@ -122,14 +122,17 @@ void CellSimulatorNode::readInjector(const ros::Time& now) {
 
 void CellSimulatorNode::publishBore(const ros::Time& now) {
   if (!isDue(bore_published_, now, kBorePeriod)) return;
-  bore_published_ = now;
   const CellModel::Bore& bore = *cell_->bore();
+  const double passed = bore_published_.isZero() ? 0 : secondsBetween(bore_published_, now);
+  const double drawn = bore.volume - std::exchange(bore_volume_, bore.volume);
+  bore_published_ = now;
   cell_microinjection::BoreState state;
   state.header.stamp = now;
   state.covered = bore.covered;
   state.length = bore.length;
   state.volume = bore.volume;
-  state.flow = bore.flow;
+  // The mean since the last message, so that what the injector adds up is the volume in the bore.
+  state.flow = bore.covered && bore.volume > 0 && passed > 0 ? drawn / passed : bore.flow;
   state.suction = bore.suction;
   state.tension = bore.tension;
   bore_->publish(state);

@@ -66,6 +66,7 @@ class CellSimulatorNode {
   Input<cell_microinjection::InjectorState>* injector_ = nullptr;  ///< these two are of a needle with a bore
   Output<cell_microinjection::BoreState>* bore_ = nullptr;
   ros::Time bore_published_;
+  double bore_volume_ = 0;  ///< m^3, then
   cell_microinjection::CellContact last_contact_;
   bool can_be_punctured_ = false;
   std::string invalid_reason_;  ///< why the last force was invalid; else empty

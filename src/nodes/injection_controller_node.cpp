@@ -14,7 +14,7 @@ namespace microinjection {
 namespace {
 
 constexpr char kControllerCommandTopic[] = "controller/state_command";
-constexpr double kInterfaceTimeout = 0.2;  ///< s, of images at 10 Hz and more
+constexpr double kInterfaceTimeout = 0.1;  ///< s, of images at 20 Hz and more; less than a tongue takes to spring back
 constexpr double kNeedleRests = 0.5e-6;    ///< m beyond the rig's resolution, within which a set-point is no motion
 constexpr double kNeedleStands = 0.2;      ///< s beyond the rig's times, for which its pose may stay in a motion
 
@@ -77,6 +77,7 @@ InjectionControllerNode::InjectionControllerNode(Bus& bus)
       action_(bus, model_, parameters_.model.goal),
       repeated_(bus, kControllerCommandTopic),
       log_(bus) {
+  interface_.optional = true;
   needle_.onMessage(
       [this](const geometry_msgs::PoseStamped& needle, const ros::Time& now) { watchNeedle(needle, now); });
   if (parameters_.model.mode == "manual") {
@@ -200,8 +201,9 @@ void InjectionControllerNode::watchNeedle(const geometry_msgs::PoseStamped& need
 
 /// By the force that it acts on, a cell none of whose membranes has failed.
 bool InjectionControllerNode::feelsContact() const {
+  const InjectionState state = model_.injection();
   const bool in_contact =
-      model_.injection() == InjectionState::kContact || model_.injection() == InjectionState::kIndent;
+      state == InjectionState::kContact || state == InjectionState::kIndent || state == InjectionState::kAspirate;
   return in_contact && model_.punctures() == 0 && model_.monitor().touched();
 }
 

@@ -74,6 +74,7 @@ void InjectorNode::makeDevice() {
   simulated_ = model.get();  // owned by device_, which outlives the service
   device_ = std::move(model);
   bore_ = &cycle_.input<cell_microinjection::BoreState>("cell/bore", InputPhase::kSampled, kBoreTimeout);
+  bore_->optional = true;  // of a scene whose needle has a bore
   clog_ = cycle_.bus().advertiseService<std_srvs::SetBool>(
       "~clog", [this](std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response) {
         clogged_ = request.data;

@@ -33,7 +33,7 @@ const Keys kLengths = {
      {"speed_limit", "jump_limit", "lag_limit", "tracking_limit", "needle_speed_limit", "depth_limit",
       "motion/approach_speed", "motion/travel_limit", "motion/indent_speed", "motion/stab_speed",
       "motion/stab_acceleration", "motion/overshoot", "motion/retract_speed", "witness/depth", "witness/gap",
-      "goal/depth", "goal/margin", "goal/suction/dent"}},
+      "goal/depth", "goal/margin", "goal/suction/dent", "goal/suction/length"}},
     {"display", {"colour_range", "force_scale", "injection_pipette/length", "holding_pipette/length"}},
     {kMicroscope, {"camera/pixel_size", "focus/range", "focus/speed"}},
     {"haptic_device", {"handle_offset", "arrow_scale"}}};

@@ -51,7 +51,8 @@ InjectionCase randomSuctionCase(int seed) {
   result.believed_modulus *= modulus / result.cell.young_modulus;
   result.cell.young_modulus = modulus;
   result.offset *= diameter / before;
-  const double bore = even(2e-6, 3.5e-6), suction = evenLog(0.06, 0.25) * modulus;
+  // The trial's tip grows with its cell: 3 um on a cell of 56 um (ScaledCell).
+  const double bore = std::min(even(2e-6, 3.5e-6), 0.85 * 3 * diameter / 56), suction = evenLog(0.06, 0.25) * modulus;
   result.cell.bore_radius = bore;
   AspirationConfig& aspiration = result.cell.puncture.layers.front().aspiration.emplace();
   aspiration.tension = suction * bore / (2 * (1 - 2 * bore / diameter));

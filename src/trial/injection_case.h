@@ -26,9 +26,9 @@ struct InjectionCase {
 InjectionCase randomInjectionCase(int seed);
 
 /// A cell whose last membrane breaks by suction: diameter 50 to 150 um, modulus 1 to 5 kPa, even in its logarithm; a
-/// bore of 2 to 3.5 um whose filling is 2 to 50 times as viscous as water (a solution of PVP); the membrane fails at a
-/// suction of 0.06 to 0.25 of the modulus, by a rate law in every second cell, and cytoplasm of 0.1 to 1 Pa s follows.
-/// Without a membrane that breaks so in every tenth.
+/// bore of 2 to 3.5 um, at most 0.85 of the tip, whose filling is 2 to 50 times as viscous as water (a solution of
+/// PVP); the membrane fails at a suction of 0.06 to 0.25 of the modulus, by a rate law in every second cell, and
+/// cytoplasm of 0.1 to 1 Pa s follows. Without a membrane that breaks so in every tenth.
 InjectionCase randomSuctionCase(int seed);
 
 /// m, where the tip begins, above the cell.

@@ -1,5 +1,6 @@
 #include "cell/identification/combined_modulus.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -8,13 +9,22 @@ namespace {
 
 constexpr double kInterval = 1.96;  ///< deviations, half an interval of 95 %
 
-double deviationOf(const Estimate& modulus) { return std::log(modulus.high / modulus.low) / (2 * kInterval); }
+constexpr double kLeast = 1e-9;  ///< of the logarithm: an interval without a width has a weight, too
+
+double deviationOf(const Estimate& modulus) {
+  return std::max(kLeast, std::log(modulus.high / modulus.low) / (2 * kInterval));
+}
 
 }  // namespace
 
 Identification combineModuli(const Identification& force, const Identification& tongue) {
   const Estimate &by_force = *force.find("young_modulus"), &by_tongue = *tongue.find("young_modulus");
   Identification result;
+  if (!by_force.bounded && !by_tongue.bounded) {
+    result = tongue;
+    result.warnings.emplace_back("neither the force nor the tongues bound the modulus");
+    return result;
+  }
   if (!by_force.bounded || !by_tongue.bounded) {
     result = by_force.bounded ? force : tongue;
     result.warnings.emplace_back(by_force.bounded ? "the tongues do not bound the modulus: it is that of the force"

@@ -63,7 +63,7 @@ BoreTongue solveBoreTongue(const Scene& scene) {
   const Scene mouth = boreMouth(scene);
   const double bore = *scene.needle.bore_radius, modulus = mouth.cell.material().young_modulus;
   std::vector<double> pressures;
-  for (double suction = 0; suction <= kStrongest; suction += kStep) pressures.push_back(-suction * modulus);
+  for (int i = 0; i * kStep < kStrongest + kStep / 2; ++i) pressures.push_back(-i * kStep * modulus);
   ConvergedTongueConfig config;
   config.tolerance = kTolerance;
   config.finest = 1;

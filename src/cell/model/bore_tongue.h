@@ -40,7 +40,7 @@ Scene boreMouth(const Scene& scene);
 
 /// Solves the tongue of boreMouth(): some seconds. Suctions rise in steps of a twentieth of the
 /// modulus as long as there is an equilibrium.
-/// @throws ConfigError when the scene's needle has no bore, or no two suctions have an equilibrium
+/// @throws ConfigError when the scene's needle has no bore, or fewer than four suctions have an equilibrium
 BoreTongue solveBoreTongue(const Scene& scene);
 
 }  // namespace microinjection

@@ -20,7 +20,7 @@ std::optional<InjectorReport> InjectorLink::report(const ros::Time& now) {
   readRefusal(state->refusal);
   // A fault may be why it was refused.
   if (!refusal_.empty()) return InjectorReport{state->busy, 0, false, refusal_};
-  if (!state->fault.empty() || !std::isfinite(state->volume)) return std::nullopt;
+  if (!state->fault.empty() || !std::isfinite(state->volume + state->pressure + state->flow)) return std::nullopt;
   if (pending_ != 0) {
     const bool over = state->last_id == pending_ || (begun_ && !state->busy);
     begun_ = begun_ || state->busy;

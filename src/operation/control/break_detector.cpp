@@ -16,6 +16,7 @@ constexpr double kNominalFrame = 0.02;   ///< s between two images
 constexpr int kRestImages = 5;           ///< of which the interface's place at rest is the mean
 constexpr double kStays = 0.5;           ///< share of the advance or fall that is left after a break
 constexpr double kSure = 3.3;            ///< deviations
+constexpr double kPatience = 0.5;        ///< s, for an image that confirms the alarm of images
 
 }  // namespace
 
@@ -58,6 +59,8 @@ bool FallDetector::step(double force) {
   return recent_.full() && before() - now() > std::max(smallest_, share_ * before());
 }
 
+bool FallDetector::couldFall() const { return recent_.full() && now() > 2 * smallest_; }
+
 BreakDetector::BreakDetector(const BreakDetectionConfig& config, double force_noise)
     : config_(config),
       force_noise_(force_noise),
@@ -76,7 +79,10 @@ std::string BreakDetector::watch(const std::optional<double>& force, const std::
     last_ = interface->position;
     // Images that come apart show more of the same speed, and no more noise.
     const double speed = advance / std::max(std::exchange(since_image_, 0.0), kNominalFrame);
-    if (interface_.step(speed)) alarm = "image";
+    if (interface_.step(speed)) {
+      alarm = "image";
+      image_alarmed_ = true;
+    }
   }
   if (force && force_.step(*force)) {
     alarm = "force";
@@ -88,8 +94,11 @@ std::string BreakDetector::watch(const std::optional<double>& force, const std::
   return alarm;
 }
 
-std::optional<bool> BreakDetector::confirm(const std::optional<double>& force,
-                                           const std::optional<InterfaceReading>& interface, double dt) {
+bool BreakDetector::canTell() const { return force_.couldFall() || rest_.count > 0 || config_.flow_noise > 0; }
+
+std::optional<BreakDetector::Verdict> BreakDetector::confirm(const std::optional<double>& force,
+                                                             const std::optional<InterfaceReading>& interface,
+                                                             double dt) {
   confirming_ += dt;
   // An alarm of the force comes before the image that shows the interface at its furthest.
   if (interface && interface->is_new) {
@@ -100,16 +109,18 @@ std::optional<bool> BreakDetector::confirm(const std::optional<double>& force,
   if (confirming_ <= config_.settle) return std::nullopt;
   if (force) force_after_.add(*force);
   if (interface && interface->is_new) interface_after_.add(interface->position);
-  if (confirming_ <= config_.settle + config_.confirm) return std::nullopt;
+  const double late = confirming_ - config_.settle - config_.confirm;
+  if (late <= 0 || (image_alarmed_ && interface_after_.count == 0 && late < kPatience)) return std::nullopt;
+  const auto verdict = [](bool broken) { return broken ? Verdict::kBroken : Verdict::kWhole; };
   if (interface_after_.count > 0 && rest_.count > 0 && alarm_.count > 0) {
     const double advance = alarm_.value() - rest_.value(), left = interface_after_.value() - rest_.value();
     const double unsure = config_.interface_noise * std::sqrt(1.0 / interface_after_.count + 1.0 / rest_.count);
     const bool tells = advance > 2 * kSure * unsure;  // else it has not moved far enough to be seen to spring back
-    if (tells || !force_alarmed_) return left > std::max(kStays * advance, kSure * unsure);
+    if (tells || image_alarmed_) return verdict(left > std::max(kStays * advance, kSure * unsure));
   }
-  if (!force_alarmed_ || force_after_.count == 0) return false;
-  const double unsure = force_noise_ * std::sqrt(1.0 / force_after_.count + 1.0 / 8);
-  return before_ - force_after_.value() > std::max(kStays * (before_ - fallen_), kSure * unsure);
+  if (!force_alarmed_ || force_after_.count == 0) return Verdict::kUnknown;
+  const double unsure = force_noise_ * std::sqrt(1.0 / force_after_.count + 1.0 / FallDetector::kMean);
+  return verdict(before_ - force_after_.value() > std::max(kStays * (before_ - fallen_), kSure * unsure));
 }
 
 void BreakDetector::resume() { *this = BreakDetector(config_, force_noise_); }

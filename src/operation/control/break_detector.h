@@ -41,15 +41,16 @@ class RiseDetector {
 /// means of 8 samples that are 32 samples apart, the later one is lower by more than noise and a share of the force.
 class FallDetector {
  public:
+  static constexpr int kMean = 8, kApart = 32;  ///< samples
   /// @param deviation N, of a sample; @param share of the force, in (0, 1); @param false_rate a sample, in (0, 0.01)
   FallDetector(double deviation, double share, double false_rate);
   bool step(double force);  ///< N; returns whether it has fallen
+  bool couldFall() const;   ///< the force is large enough for a fall to be seen
   double before() const;    ///< N, mean before the fall; @pre 40 samples
   double now() const;       ///< N, mean of the last 8; @pre 8 samples
   void reset() { recent_.clear(); }
 
  private:
-  static constexpr int kMean = 8, kApart = 32;  ///< samples
   double mean(int begin) const;
 
   double smallest_, share_;
@@ -82,10 +83,14 @@ class BreakDetector {
   std::string watch(const std::optional<double>& force, const std::optional<InterfaceReading>& interface,
                     const std::optional<double>& flow, double dt);
 
-  /// Of a step after the suction has ended, with the same readings. Returns whether the membrane is broken; empty: it
-  /// is too early to tell.
-  std::optional<bool> confirm(const std::optional<double>& force, const std::optional<InterfaceReading>& interface,
-                              double dt);
+  /// Of what the witnesses say after the suction has ended. Nothing that is heard is no sign of a whole membrane.
+  enum class Verdict { kBroken, kWhole, kUnknown };
+  /// Of a step after the suction has ended, with the same readings. Empty: it is too early to tell.
+  std::optional<Verdict> confirm(const std::optional<double>& force, const std::optional<InterfaceReading>& interface,
+                                 double dt);
+  /// Whether a break could be told by what has been watched so far: the force is above its noise, an image has shown
+  /// the interface, or the flow is measured.
+  bool canTell() const;
   void resume();  ///< the alarm was false: the suction goes on
 
  private:
@@ -106,7 +111,7 @@ class BreakDetector {
   double since_image_ = 0;      ///< s
   std::optional<double> last_;  ///< m, of the interface
   Mean rest_, alarm_;           ///< m, of the interface before it moved, and when the alarm was
-  bool force_alarmed_ = false;
+  bool force_alarmed_ = false, image_alarmed_ = false;
   double before_ = 0, fallen_ = 0;  ///< N, of the force about its alarm
   double confirming_ = 0;           ///< s
   Mean force_after_, interface_after_;

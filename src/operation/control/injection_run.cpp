@@ -255,11 +255,18 @@ void InjectionRun::aspirate(const NeedleMonitor& monitor, const std::optional<In
                  "the interface has come as far as suction may draw it, and has gone back");
     case SuctionRun::Status::kNoWord:
       return end(InjectionOutcome::kNotPunctured,
-                 "the witnesses have told a break too often that they did not confirm");
+                 "the witnesses have told a break that they do not confirm: the membrane may be open");
+    case SuctionRun::Status::kBlind:
+      return end(
+          InjectionOutcome::kNotPunctured,
+          "nothing could tell that suction breaks the membrane: the force in the dent is within its noise, and no "
+          "image shows the interface");
     case SuctionRun::Status::kInjector:
       const bool refuses = injector && !injector->refusal.empty();
       return end(refuses ? InjectionOutcome::kNotInjected : InjectionOutcome::kInjectorTimeOut,
-                 refuses ? "the injector refused the suction: " + injector->refusal : "no valid state of the injector");
+                 refuses    ? "the injector refused the suction: " + injector->refusal
+                 : injector ? "the injector does not draw as it is told"
+                            : "no valid state of the injector");
   }
 }
 

@@ -64,10 +64,11 @@ class InjectionRun {
   void expect(const std::optional<ExpectedPuncture>& expected) { expected_ = expected; }
   /// The interface in the needle's bore; empty: no image shows it. Call before each step.
   void see(const std::optional<InterfaceReading>& interface) { interface_ = interface; }
-  /// After a rest: a stab starts slowly again, and suction from nothing.
+  /// After a rest: a stab starts slowly again, and suction from nothing. A break that is being confirmed is confirmed
+  /// first, because the membrane may be open.
   void restart() {
     speed_ = 0;
-    suction_.reset();
+    if (suction_ && !suction_->confirms()) suction_.reset();
   }
   /// The withdrawal begins; the outcome is that of the completed steps.
   void withdraw();

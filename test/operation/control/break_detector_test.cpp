@@ -10,6 +10,8 @@
 namespace microinjection {
 namespace {
 
+using Verdict = BreakDetector::Verdict;
+
 constexpr double kForceNoise = 10e-9;  // N
 
 /// A membrane under suction in virtual time: what the witnesses see of it, with noise.
@@ -80,11 +82,11 @@ TEST(BreakDetector, ConfirmsWhatStaysAndDeniesWhatSpringsBack) {
     }
     EXPECT_EQ(alarm, "image");
     EXPECT_LT(latency, 60);
-    std::optional<bool> confirmed;
+    std::optional<Verdict> confirmed;
     while (!confirmed) {
       confirmed = detector.confirm(witnessed.force(0.2e-6), witnessed.interface(broken ? position : 0), 1e-3);
     }
-    EXPECT_EQ(*confirmed, broken);
+    EXPECT_EQ(*confirmed, broken ? Verdict::kBroken : Verdict::kWhole);
   }
 }
 
@@ -96,9 +98,9 @@ TEST(BreakDetector, TheForceAloneTellsABreak) {
     std::string alarm;
     for (int i = 0; alarm.empty() && i < 100; ++i) alarm = detector.watch(witnessed.force(0.05e-6), {}, {}, 1e-3);
     EXPECT_EQ(alarm, "force");
-    std::optional<bool> confirmed;
+    std::optional<Verdict> confirmed;
     while (!confirmed) confirmed = detector.confirm(witnessed.force(broken ? 0.05e-6 : 0.2e-6), {}, 1e-3);
-    EXPECT_EQ(*confirmed, broken);
+    EXPECT_EQ(*confirmed, broken ? Verdict::kBroken : Verdict::kWhole);
   }
 }
 
@@ -113,12 +115,34 @@ TEST(BreakDetector, AMeasuredFlowTellsABreak) {
   while (detector.watch({}, {}, 1e-15 + noise(random), 1e-3).empty()) ASSERT_LT(++latency, 10);
 }
 
-/// In steps of 1 ms with an injector that reports.
+/// Images that end with their alarm, or a flow that nobody can ask again: no word is no whole membrane.
+TEST(BreakDetector, NobodyHeardIsNoWholeMembrane) {
+  BreakDetectionConfig config;
+  config.flow_noise = 0.1e-15;
+  BreakDetector by_flow(config, kForceNoise), by_image({}, kForceNoise);
+  for (int i = 0; i < 200; ++i) by_flow.watch({}, {}, 0, 1e-3);
+  while (by_flow.watch({}, {}, 2e-15, 1e-3).empty()) {
+  }
+  Witnessed witnessed(8);
+  for (int i = 0; i < 150; ++i) by_image.watch({}, witnessed.interface(0), {}, 1e-3);
+  for (double position = 0; by_image.watch({}, witnessed.interface(position), {}, 1e-3).empty(); position += 0.1e-6) {
+  }
+  for (BreakDetector* detector : {&by_flow, &by_image}) {
+    std::optional<Verdict> verdict;
+    for (int i = 0; i < 2000 && !verdict; ++i) verdict = detector->confirm({}, {}, 1e-3);
+    ASSERT_TRUE(verdict);
+    EXPECT_EQ(*verdict, Verdict::kUnknown);
+  }
+}
+
+/// In steps of 1 ms with an injector that reports, and draws as it is told.
 class Suction {
  public:
   explicit Suction(const SuctionGoal& goal) : run(goal, {}, kForceNoise) {}
   SuctionRun::Status step(double force, std::optional<InterfaceReading> interface, bool reports = true) {
-    const auto report = reports ? std::optional(InjectorReport{false, 0, false, "", 500, 0}) : std::nullopt;
+    const auto drawn = run.pressure();
+    const InjectorReport obeying{drawn.has_value(), 0, false, "", drawn.value_or(500), 0};
+    const auto report = reports ? std::optional(obeying) : std::nullopt;
     return run.step(force, interface, report, 1e-3);
   }
   SuctionRun run;
@@ -161,6 +185,13 @@ TEST(SuctionRun, EndsTheSuctionAtTheAlarm) {
   EXPECT_NEAR(suction.run.suction(), 500 * 0.85, 25);
 }
 
+TEST(SuctionRun, DoesNotDrawWhereNoBreakCouldBeTold) {
+  Suction suction({});
+  SuctionRun::Status status = SuctionRun::Status::kUnderWay;
+  for (int i = 0; i < 200 && status == SuctionRun::Status::kUnderWay; ++i) status = suction.step(5e-9, {});
+  EXPECT_EQ(status, SuctionRun::Status::kBlind);
+}
+
 TEST(SuctionRun, EndsWhereTheInterfaceMayNotGo) {
   SuctionGoal goal;
   goal.length = 5e-6;
@@ -169,6 +200,11 @@ TEST(SuctionRun, EndsWhereTheInterfaceMayNotGo) {
   double position = 0;
   while (position < 5.1e-6) suction.step(0.2e-6, InterfaceReading{position += 1e-9, true});
   EXPECT_FALSE(suction.run.pressure());
+  SuctionRun::Status status = SuctionRun::Status::kUnderWay;
+  for (int i = 0; i < 1000 && status == SuctionRun::Status::kUnderWay; ++i) {
+    status = suction.step(0.2e-6, InterfaceReading{0, i % 20 == 0});
+  }
+  EXPECT_EQ(status, SuctionRun::Status::kTooMuch);
 }
 
 TEST(SuctionRun, AnInjectorThatDoesNotReportEndsIt) {

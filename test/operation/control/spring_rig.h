@@ -25,7 +25,8 @@ struct SpringRig {
   double noise = 10e-9;          ///< N rms, along the pipette
   double lag = 2e-3;             ///< s
   bool injector_works = true;
-  double full = 0.2e-15;                                                ///< m^3, of a pulse
+  bool obeys = true;      ///< the injector changes a suction's pressure as it is told
+  double full = 0.2e-15;  ///< m^3, of a pulse
   bool needle_tells = true, force_tells = true, injector_tells = true;  ///< else nothing is known of it
 
   Eigen::Vector3d tip = Eigen::Vector3d(0, 0, 40e-6);
@@ -67,7 +68,9 @@ struct SpringRig {
       punctured = true;
       punctured_at = depth();
     }
-    input.injector = InjectorReport{asked && volume < full, volume, volume >= full};
+    const bool draws = pressure < 0 && obeys;
+    input.injector =
+        InjectorReport{asked && volume < full, volume, volume >= full, "", draws || pressure > 0 ? pressure : 0, 0};
     if (!needle_tells) input.needle.reset();
     if (!force_tells) input.force.reset();
     if (!injector_tells) input.injector.reset();

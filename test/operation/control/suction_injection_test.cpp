@@ -88,6 +88,33 @@ TEST_F(SuctionInjectionTest, NoSuctionWhileItIsPaused) {
   EXPECT_EQ(controller_.result().outcome, InjectionOutcome::kInjected) << controller_.result().reason;
 }
 
+/// The pause comes between the alarm and its confirmation: the membrane is open, and must not be drawn in again.
+TEST_F(SuctionInjectionTest, APauseDoesNotForgetABreak) {
+  rig_.break_suction = 400;
+  enable();
+  ASSERT_TRUE(reach(InjectionState::kAspirate));
+  while (!rig_.punctured) rig_.step(controller_);
+  while (controller_.pulse()) rig_.step(controller_);
+  EXPECT_EQ(controller_.command("pause"), "");
+  steps(300);
+  EXPECT_EQ(controller_.command("resume"), "");
+  while (controller_.injection() == InjectionState::kAspirate) {
+    EXPECT_FALSE(controller_.pulse());
+    rig_.step(controller_);
+  }
+  EXPECT_EQ(controller_.injection(), InjectionState::kPunctured);
+}
+
+/// As one on a serial line, which cannot change the pressure of a pulse under way.
+TEST_F(SuctionInjectionTest, AnInjectorThatDoesNotDrawIsSaid) {
+  rig_.obeys = false;
+  enable();
+  rig_.run(controller_);
+  EXPECT_EQ(controller_.result().outcome, InjectionOutcome::kInjectorTimeOut);
+  EXPECT_EQ(controller_.result().reason, "the injector does not draw as it is told");
+  EXPECT_FALSE(controller_.pulse());
+}
+
 TEST_F(SuctionInjectionTest, WhatIsLostEndsTheSuctionAndHoldsTheNeedle) {
   const struct {
     const char* what;
