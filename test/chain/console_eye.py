@@ -6,7 +6,7 @@ the guards' bars in one to the right of it. It sees what an operator sees: a but
 
 import numpy
 
-BUTTONS = ("Enable", "Home", "Approach", "Indent", "Inject", "Withdraw", "Disable")
+BUTTONS = ("Enable", "Home", "Approach", "Indent", "Aspirate", "Inject", "Withdraw", "Disable")
 DEVICES = ("Rig", "Camera", "Sensor", "Hand", "Cell", "Injector")
 HAND = ("Needle", "Clutch", "Switch")
 ROWS = {"inject": (*DEVICES, "Estimate"), "teleoperate": (*HAND, *DEVICES)}  # of lamps
