@@ -88,7 +88,9 @@ TEST_F(IdentifyCommand, TonguesHaveTheModulusOfTheSceneThatAspirateSolves) {
   EXPECT_NE(read(directory_ + "fitted.yaml").find("inner_radius"), std::string::npos);
   for (const auto& [arguments, told] : std::vector<std::pair<std::string, std::string>>{
            {"--tongue tongues.csv", "--tongue: needs --scene"},
-           {"--tongue tongues.csv --record x.csv --scene " + scene, "one of them must be given"},
+           {"--tongue tongues.csv --record x.csv --scene " + scene, "x.csv: cannot be read"},
+           {"--tongue tongues.csv --record x.csv --residuals r.csv --scene " + scene,
+            "--residuals: must be left out with --tongue"},
            {"--tongue tongues.csv --prony 1 --scene " + scene, "--prony: must be left out with --tongue"},
            {"--tongue tongues.csv --scene " + std::string(kCells) + "mouse_oocyte.yaml",
             "holding_pipette/mouth: is missing"}}) {
@@ -114,7 +116,7 @@ TEST_F(IdentifyCommand, BadPointsAreRefused) {
   EXPECT_EQ(run("--point 8e-6,-1e-6 --reading-error 0.05" + scene).status, 2);
   const Outcome both = run("--record a.csv --point 8e-6,1e-6 --reading-error 0.05" + scene);
   EXPECT_EQ(both.status, 2);
-  EXPECT_NE(both.err.find("--record, or else --point"), std::string::npos) << both.err;
+  EXPECT_NE(both.err.find("--record, --tongue or both, or else --point"), std::string::npos) << both.err;
 }
 
 TEST_F(IdentifyCommand, OptionsInAnotherUnitAreRefused) {
