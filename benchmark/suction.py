@@ -128,7 +128,7 @@ def joined(count, noise, seed):
     for number in range(1, count + 1):
         begin = time.perf_counter()
         radius = random.uniform(30, 70)
-        inner, edge, true = radius * random.uniform(0.25, 0.35), radius * random.uniform(0.05, 0.08), log_uniform(random, 2e3, 2e4)
+        inner, edge, true = radius * random.uniform(0.25, 0.35), radius * random.uniform(0.05, 0.08), log_uniform(random, 8e3, 3e4)
         strongest = -true * random.uniform(0.05, 0.15)
         scene = held_scene(radius, inner, inner + 4 * edge, edge, 0.49, true, pressure=strongest / 2).replace({'needle/tip/radius': 1e-6 * radius * 0.1})
         pressures = strongest * numpy.linspace(1 / 6, 1, 6)
@@ -144,8 +144,12 @@ def joined(count, noise, seed):
         force = numpy.interp(height, numpy.concatenate([[-1, 0], depths[good]]), numpy.concatenate([[0, 0], solved['force'][good, 2]]))
         glued = {key: value for key, value in told.to_dict().items() if key != 'holding_pipette'}
         touch = 1e-6 * (inner + edge) * radius / (radius + edge)  # where a sphere meets the lip
-        curve = identify({'time_s': numpy.arange(len(height)) * 1e-3, 'depth_um': 1e6 * height, 'force_nN': 1e9 * (force + random.normal(0, 10e-9, len(height)))},
-                         Scene({**glued, 'holding_pipette': {'contact_radius': touch}}))
+        try:
+            curve = identify({'time_s': numpy.arange(len(height)) * 1e-3, 'depth_um': 1e6 * height, 'force_nN': 1e9 * (force + random.normal(0, 10e-9, len(height)))},
+                             Scene({**glued, 'holding_pipette': {'contact_radius': touch}}))
+        except ConfigError as error:
+            print(f'suction: cell {number}: {error}', file=sys.stderr)
+            continue
         wide = curve['young_modulus']
         curve.estimates['young_modulus'] = dataclasses.replace(wide, low=wide.low / GLUED, high=wide.high * GLUED)
         both = combine_moduli(curve, tongue)
