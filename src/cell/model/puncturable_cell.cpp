@@ -72,6 +72,8 @@ void PuncturableCell::coverBore(int layer) {
 void PuncturableCell::touch(const Eigen::Vector3d& point, const Pose& pose) {
   work_ = 0;
   resealed_ = holes_.under(point, pose.axis, tip_.radius);
+  // A touch that is moved onto the needle's line may come to lie in a hole that is open.
+  if (resealed_ && !holes_[*resealed_].left) resealed_.reset();
   strength_ = resealed_ ? -std::expm1(-(pose.time - *holes_[*resealed_].left) / config_.resealing_time) : 1;
 }
 
@@ -86,6 +88,7 @@ TipForce PuncturableCell::computeForce(const Pose& pose) {
     if (open && isOut(*hole, pose)) return {true, fading_.at(pose.tip, pose.time)};
     if (open) {
       work_ = 0;
+      strength_ = 1;
       enter(*hole, pose);
     }
   }

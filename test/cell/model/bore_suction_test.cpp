@@ -192,6 +192,21 @@ TEST(PuncturableCell, HasTheModesOfBreakage) {
   EXPECT_EQ(whole.cell->insertion().layers_punctured, 1);
 }
 
+/// A live cell moves a touch onto the needle's line, here into an open hole that the tip's own line misses: the cell is
+/// whole there, with all of its strength.
+TEST(PuncturableCell, ATouchThatIsMovedIntoAnOpenHoleFindsAWholeCell) {
+  PunctureDrive drive(PunctureConfig::atForce(1e-6));
+  drive.toDepth(12e-6);
+  ASSERT_EQ(drive.layers(), 1);
+  drive.toDepth(-5e-6);
+  drive.spring->snap = 4e-6;
+  drive.moveTo({3.5e-6, 0, kTop + 5e-6});
+  drive.rest(0.1);
+  drive.largest = 0;
+  drive.moveTo({3.5e-6, 0, kTop - 15e-6});
+  EXPECT_NEAR(drive.largest, 1e-6, 0.05e-6);
+}
+
 TEST(PuncturableCell, AHoleResealsWithItsTime) {
   for (const double rest : {0.1, 1.0, 5.0}) {
     Aspiration cell(aspirationOf("none"), 1.0);

@@ -19,7 +19,9 @@ class SpringCell : public CellModel {
     const double height = aside < radius_ ? std::sqrt(radius_ * radius_ - aside * aside) : -radius_;
     if (tip.z() >= height || aside >= radius_) contact_.reset();
     if (tip.z() >= height || aside >= radius_) return {};
-    if (!contact_) contact_ = Contact{{tip.x(), tip.y(), height}, Eigen::Vector3d::Zero(), 0};
+    const Eigen::Vector3d touch =
+        aside < snap ? Eigen::Vector3d(0, 0, radius_) : Eigen::Vector3d(tip.x(), tip.y(), height);
+    if (!contact_) contact_ = Contact{touch, Eigen::Vector3d::Zero(), 0};
     contact_->displacement = tip - contact_->contact_point;
     contact_->indentation = -contact_->displacement.dot(axis);
     return {valid, valid ? Eigen::Vector3d(-stiffness_ * contact_->displacement) : Eigen::Vector3d::Zero()};
@@ -38,6 +40,7 @@ class SpringCell : public CellModel {
 
   bool valid = true;
   int released = 0;
+  double snap = 0;  ///< m, from the axis: a touch within it is on the axis, as that of a live cell
 
  private:
   double radius_, stiffness_;
