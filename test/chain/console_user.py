@@ -6,6 +6,7 @@ import tempfile
 import time
 from pathlib import Path
 
+import numpy
 import rospy
 from cell_microinjection.msg import StringStamped
 
@@ -32,6 +33,7 @@ class ConsoleUser:
         cls.rviz = Child(["roslaunch", "cell_microinjection", "session.launch", "cell:=mouse_oocyte", f"console:={name}",
                           "only:=display rviz"], logs / "rviz.log", cls.environment)
         cls.sent = []
+        cls.seen, cls.picture = "nothing yet", None
         cls.listener = rospy.Subscriber("/controller/state_command", StringStamped,
                                         lambda message: cls.sent.append(message.string))
 
@@ -43,7 +45,9 @@ class ConsoleUser:
 
     def report(self):
         """For the message of a test that fails."""
-        return f"sent {self.sent}" + ("" if self.rviz.running() else f"; rviz has ended: {self.rviz.tail(10)}")
+        rviz = "rviz runs" if self.rviz.running() else "rviz has ended"
+        colours = 0 if self.picture is None else len(numpy.unique(self.picture.reshape(-1, 3), axis=0))
+        return f"sent {self.sent}; seen: {self.seen}, of {colours} colours; {rviz}: {self.rviz.tail(10)}"
 
     def until(self, condition, what, patience=PATIENCE):
         end = time.monotonic() + patience
@@ -58,8 +62,11 @@ class ConsoleUser:
         """The console; `picture`: all that is on the screen."""
         try:
             self.picture = console_eye.pixels_of(Path(self.folder.name) / "Xvfb_screen0")
-            return console_eye.Console(self.picture, self.console)
-        except console_eye.NotSeen:
+            console = console_eye.Console(self.picture, self.console)
+            self.seen = f"headline {console.headline}, lamps {console.lamps}, offered {console.offered}"
+            return console
+        except console_eye.NotSeen as reason:
+            self.seen = str(reason)
             return None
 
     def shows(self, condition, what, patience=PATIENCE):
