@@ -349,7 +349,8 @@ class Planner {
     const bool has_console = display.console != "none";
     if (!display.rviz && !has_console) return;
     ForeignProcess rviz;
-    rviz.name = rviz.package = rviz.program = "rviz";
+    rviz.name = rviz.program = "rviz";
+    rviz.package = "cell_microinjection";
     // The nodes at 1 kHz have priority; but a stop button must not wait for an idle processor.
     rviz.prefix = has_console ? "nice -n 5" : "chrt --idle 0";
     // rviz misreads numbers below 1 under locales with a decimal comma.

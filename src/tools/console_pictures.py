@@ -43,7 +43,8 @@ def start_rviz(name, size, logs, environment):
         before = {'Width': 1280, 'Height': 800}[key]
         config = config.replace(f'  {key}: {before}\n', f'  {key}: {value}\n')
     path.write_text(config, encoding='utf-8')
-    return Child(['nice', '-n', '5', 'rviz', '-d', str(path)], logs / 'rviz.log', {**os.environ, **environment})
+    return Child(['nice', '-n', '5', 'rosrun', 'cell_microinjection', 'rviz', '-d', str(path)], logs / 'rviz.log',
+                 {**os.environ, **environment})
 
 
 @contextlib.contextmanager

@@ -55,7 +55,7 @@ class RvizView:
         self._windows = ('root',) if self.virtual else (f'{config.name} - RViz', f'{config.name}* - RViz')
         # Rendering in software takes a whole core; the nodes at 1 kHz come first by their real-time priority.
         shown = _changed(config, logs, virtual_rate, virtual_size) if self.virtual else config
-        command = ['nice', '-n', '10', 'rviz', '-d', str(shown)] + (['--fullscreen'] if self.virtual else [])
+        command = ['nice', '-n', '10', 'rosrun', 'cell_microinjection', 'rviz', '-d', str(shown)] + (['--fullscreen'] if self.virtual else [])
         try:
             self._rviz = Child(command, logs / 'rviz.log', self.environment)
             self._rviz.favour(SHARE)

@@ -1,6 +1,7 @@
 """What the tests of the operator's console share: a virtual screen with the console, its mouse, and what is to be seen."""
 
 import os
+import re
 import subprocess
 import tempfile
 import time
@@ -13,23 +14,30 @@ from cell_microinjection.msg import StringStamped
 import console_eye
 from processes import Child
 from screen import Screen
+from slow_connection import SlowConnection
 
 PATIENCE = 150        # s of wall time; only a session or a console that hangs takes that long
 START_PATIENCE = 400  # s, for rviz on a busy machine
 SIZE = (1280, 800)    # px
+DELAY = 0.05          # s, of a slow connection
 
 
 class ConsoleUser:
     """For unittest.TestCase. `sent`: the commands on /controller/state_command."""
 
     @classmethod
-    def open_console(cls, name="inject"):
+    def open_console(cls, name="inject", slow=None):
+        """slow: which connection to the X server is slow."""
         cls.console = name
         os.environ.pop("DISPLAY", None)  # never the user's: the mouse is the test's
         cls.folder = tempfile.TemporaryDirectory()
         logs = Path(cls.folder.name)
         cls.screen = Screen(logs / "xvfb.log", SIZE, logs)
         cls.environment = {**os.environ, **cls.screen.environment}
+        cls.slow = None
+        if slow is not None:
+            cls.slow = SlowConnection(cls.screen.environment["DISPLAY"], slow, DELAY)
+            cls.environment.update(DISPLAY=cls.slow.name, QT_XCB_NO_MITSHM="1")  # file descriptors are not handed on
         cls.rviz = Child(["roslaunch", "cell_microinjection", "session.launch", "cell:=mouse_oocyte", f"console:={name}",
                           "only:=display rviz"], logs / "rviz.log", cls.environment)
         cls.sent = []
@@ -40,14 +48,20 @@ class ConsoleUser:
     @classmethod
     def close_console(cls):
         cls.rviz.stop(10)
+        if cls.slow:
+            cls.slow.close()
         cls.screen.close()
         cls.folder.cleanup()
 
     def report(self):
         """For the message of a test that fails."""
-        rviz = "rviz runs" if self.rviz.running() else "rviz has ended"
+        rviz = "rviz has died" if self.died() else "rviz runs" if self.rviz.running() else "roslaunch has ended"
         colours = 0 if self.picture is None else len(numpy.unique(self.picture.reshape(-1, 3), axis=0))
         return f"sent {self.sent}; seen: {self.seen}, of {colours} colours; {rviz}: {self.rviz.tail(10)}"
+
+    def died(self):
+        """Whether rviz has; roslaunch goes on."""
+        return re.search(r"\[rviz-\d+\] process has died", self.rviz.output()) is not None
 
     def until(self, condition, what, patience=PATIENCE):
         end = time.monotonic() + patience

@@ -302,6 +302,8 @@ TEST_F(SessionPlanTest, EachSourceOfImages) {
 TEST_F(SessionPlanTest, RvizHasTheSceneOrAConsole) {
   const SessionPlan scene = plan({"display.rviz:=true"}), console = plan({"display.console:=inject"});
   EXPECT_EQ(scene.processes.back().arguments, (Names{"-d", kPackage + "/config/session.rviz"}));
+  EXPECT_EQ(scene.processes.back().package, "cell_microinjection")
+      << "rviz of ROS can die where a screen is drawn in software";
   EXPECT_EQ(scene.processes.back().prefix, "chrt --idle 0");
   EXPECT_NE(console.processes.back().view.find("microinjection/ConsolePanel"), std::string::npos);
   EXPECT_EQ(console.processes.back().prefix, "nice -n 5");
