@@ -19,7 +19,7 @@ from slow_connection import SlowConnection
 PATIENCE = 150        # s of wall time; only a session or a console that hangs takes that long
 START_PATIENCE = 400  # s, for rviz on a busy machine
 SIZE = (1280, 800)    # px
-DELAY = 0.05          # s, of a slow connection
+DELAY = 0.2           # s, of a slow connection
 
 
 class ConsoleUser:
