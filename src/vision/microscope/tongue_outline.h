@@ -1,0 +1,24 @@
+#pragma once
+
+#include "vision/microscope/microscope_scene.h"
+
+namespace microinjection {
+
+/// The mouth of a pipette that has drawn in a part of a cell, in the image plane (m).
+struct DrawingMouth {
+  Eigen::Vector2d place{0, 0};  ///< (x, z), m, the middle of the mouth
+  Eigen::Vector2d axis{0, -1};  ///< (x, z), of unit length, from the mouth towards the shaft
+  double radius = 0;            ///< m, inner
+  double length = 0;            ///< m along the axis, from the mouth to the tongue's end
+
+  /// The same for a border `inset` (m) inside of the one that fills the mouth. Its radius may be negative.
+  DrawingMouth within(double inset) const { return {place, axis, radius - inset, length - inset}; }
+};
+
+/// Returns the outline of a cell (m) with a tongue: in place of what lies before the mouth a cap, part of a sphere, or
+/// where it would be more than half of one a cylinder with half a sphere on it. That is the shape of a membrane under
+/// a pressure; an elastic shell's tongue (FamilyTongue::outline) is flatter near the lip. Unchanged where the outline
+/// does not cross the mouth's edge on both sides, or reaches as far by itself.
+CellOutline withTongue(const CellOutline& outline, const DrawingMouth& mouth);
+
+}  // namespace microinjection
