@@ -9,8 +9,6 @@
 namespace microinjection {
 namespace {
 
-constexpr double kSteepestCap = 0.97;  // sine of the largest angle of a cap to the plane across the axis
-
 class ColumnPicture {
  public:
   ColumnPicture(const InjectionPipette& pipette, double focus, const CameraView& view, const Optics& optics,
@@ -60,12 +58,11 @@ class ColumnPicture {
     return cv::Rect(left, top, right - left, bottom - top) & cv::Rect(0, 0, view_.width, view_.height);
   }
 
-  /// px behind the cap, towards the mouth: along the normal of a cap that is part of a sphere.
+  /// px from the cap, a part of a sphere: positive towards the mouth. The column's side is no border.
   double behindCap(double s, double r) const {
     if (bulge_ == 0) return length_ - s;
-    const double sphere = (radius_ * radius_ + bulge_ * bulge_) / (2 * std::abs(bulge_));
-    const double sine = std::min(r / sphere, kSteepestCap), cosine = std::sqrt(1 - sine * sine);
-    return (length_ - std::copysign(sphere * (1 - cosine), bulge_) - s) * cosine;
+    const double sphere = (radius_ * radius_ + bulge_ * bulge_) / (2 * bulge_), ahead = s - (length_ - sphere);
+    return ahead > 0 ? sphere - std::hypot(ahead, r) : std::hypot(sphere - r, ahead);
   }
 
   void addRow(int row, const cv::Rect& region, const float* grains, const BorderProfile& profile,
@@ -87,8 +84,7 @@ class ColumnPicture {
       const float own = granules * grains[x] * profile.share(distance);
       const float change = profile.transmission(distance) + (path ? 0 : own);
       transmission[x] *= std::max(0.0F, 1 + contrast * within * change);
-      if (path)
-        path[x] += within * contrast * (profile.path(distance) + static_cast<float>(kGranulePath) * own);
+      if (path) path[x] += within * contrast * (profile.path(distance) + static_cast<float>(kGranulePath) * own);
     }
   }
 

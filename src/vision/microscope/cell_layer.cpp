@@ -7,7 +7,7 @@
 namespace microinjection {
 namespace {
 
-constexpr double kDomeWidth = 20e-6;  // m, over which the thickness of a cell becomes that of its middle
+constexpr double kDomeWidth = 20e-6;            // m, over which the thickness of a cell becomes that of its middle
 constexpr double kLargestGranuleBlur = 0.8e-6;  // m rms
 
 /// What belongs to one cell: changes add up in it, and the image is multiplied by it once.
@@ -19,7 +19,8 @@ class CellPicture {
 
   void add(const CellOutline& outline, const BodyOptics& body, double granules) {
     if (outline.empty()) return;
-    const BorderProfile profile(optics_, defocus_, borderSteps(body, optics_.pixelSize()), body.dome, kDomeWidth / optics_.pixelSize());
+    const BorderProfile profile(optics_, defocus_, borderSteps(body, optics_.pixelSize()), body.dome,
+                                kDomeWidth / optics_.pixelSize());
     std::vector<Eigen::Vector2d> corners;
     corners.reserve(outline.size());
     for (const Eigen::Vector2d& corner : outline) corners.push_back(view_.pixelOf(corner));

@@ -63,8 +63,8 @@ void checkInjection(ConfigErrors& errors, const InjectionPipette& pipette) {
   if (!pipette.column) return;
   errors.require(Range::positive(), "bore column length", pipette.column->length, " m");
   const double bore = (1 - pipette.wall) * pipette.tip_radius;
-  errors.require(std::abs(pipette.column->bulge) <= bore, "bore column bulge", pipette.column->bulge, " m",
-                 "at most the bore's radius");
+  errors.require(pipette.column->bulge >= 0 && pipette.column->bulge <= bore, "bore column bulge",
+                 pipette.column->bulge, " m", "from 0 to the bore's radius");
 }
 
 }  // namespace

@@ -80,8 +80,8 @@ struct HoldingPipette {
 
 /// What a needle has drawn into its bore: a column of the cell's inside, from the mouth to a cap.
 struct BoreColumn {
-  double length = 0;           ///< m along the axis, from the mouth to the middle of the cap; above 0
-  double bulge = 0;            ///< m, of the cap's middle ahead of its edge; negative: a hollow cap
+  double length = 0;  ///< m along the axis, from the mouth to the middle of the cap; above 0
+  double bulge = 0;   ///< m, of the cap's middle ahead of its edge
   std::uint64_t texture_seed = 1;
   BodyOptics optics{0.5, 0.10, 0.42, 0, 1.6e-6, 0.22, 0.8e-6, 0, 0.085};
 

@@ -257,7 +257,7 @@ class SceneMaker {
   bool has_cell_ = false;
   double radius_ = 0, ellipticity_ = 0, angle_ = 0;
   double zona_ = 0, gap_ = 0;  ///< m, thickness of the zona and of the gap within it
-  double tilt_ = 0;  ///< rad, of the holding pipette
+  double tilt_ = 0;            ///< rad, of the holding pipette
 };
 
 }  // namespace

@@ -49,9 +49,8 @@ CellScene cellScene(const SpecimenConfig& config, const Specimen& specimen, cons
   }
   if (config.polar_body_radius > 0) {
     const double away = radius - zona - config.polar_body_radius * radius;
-    const Eigen::Vector3d body =
-        specimen.cell *
-        (away * Eigen::Vector3d(std::cos(config.polar_body_angle), 0, std::sin(config.polar_body_angle)));
+    const Eigen::Vector3d body = specimen.cell * (away * Eigen::Vector3d(std::cos(config.polar_body_angle), 0,
+                                                                         std::sin(config.polar_body_angle)));
     cell.polar_body = CellBody::polarBody({body.x(), body.z()}, config.polar_body_radius * radius);
   }
   const auto mouth = drawingMouth(config, specimen);

@@ -41,8 +41,8 @@ struct Specimen {
     double length = 0;    ///< m from the mouth
     bool broken = false;  ///< cytoplasm, instead of a tongue of the whole membrane
   };
-  std::vector<Eigen::Vector3d> vertices;                       ///< of the cell's surface
-  Eigen::Isometry3d cell = Eigen::Isometry3d::Identity();      ///< pose of the cell, with which its inside moves
+  std::vector<Eigen::Vector3d> vertices;                   ///< of the cell's surface
+  Eigen::Isometry3d cell = Eigen::Isometry3d::Identity();  ///< pose of the cell, with which its inside moves
   std::vector<std::array<int, 3>> triangles;
   double radius = 0;                        ///< m, of the undeformed cell
   double shell_thickness = 0;               ///< m, of the outer layer; 0: none
