@@ -128,7 +128,7 @@ class SceneMaker {
     pipette.optics.core = random_.within(0.05, 0.4);
     pipette.optics.lumen = random_.within(0, 0.25);
     const bool lost = has_cell_ && config_.lost > 0 && random_.chance(config_.lost);
-    if (lost) pipette.mouth += random_.within(config_.away) * pipette.axis;
+    if (lost) pipette.mouth += (reachIn(pipette) + random_.within(config_.away)) * pipette.axis;
     if (has_cell_ && !lost) drawIn(pipette);
     drawn_.truth.held = has_cell_ && !lost;
     drawn_.scene.holding = pipette;
@@ -170,10 +170,15 @@ class SceneMaker {
     drawn_.truth.in_needle = length * in_image / view_.pixel_size;
   }
 
+  /// m, that the cell reaches into the mouth without suction.
+  double reachIn(const HoldingPipette& pipette) const {
+    return (centre_ + distanceToBorder(pipette.axis) * pipette.axis - pipette.mouth).dot(pipette.axis);
+  }
+
   /// Draws a tongue of the cell into the holding pipette, which presses its lip on the cell.
   void drawIn(const HoldingPipette& pipette) {
     CellScene& cell = drawn_.scene.cells.front();
-    const double own = (centre_ + distanceToBorder(pipette.axis) * pipette.axis - pipette.mouth).dot(pipette.axis);
+    const double own = reachIn(pipette);
     drawn_.truth.in_holder = own / view_.pixel_size;
     if (!(config_.in_holder > 0 && random_.chance(config_.in_holder))) return;
     const DrawingMouth mouth{pipette.mouth, pipette.axis, pipette.inner_radius,

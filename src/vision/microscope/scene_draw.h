@@ -34,7 +34,7 @@ struct SceneDrawConfig {
   DrawInterval tip_radius{0.4e-6, 3e-6};   ///< m, outer, of the injection pipette
   DrawInterval column{4e-6, 30e-6};        ///< m, length
   DrawInterval tongue{0.1, 0.6};           ///< length beyond what the mouth has of the cell at rest, over its radius
-  DrawInterval away{5e-6, 40e-6};          ///< m, from the mouth to where a lost cell would be held
+  DrawInterval away{5e-6, 40e-6};          ///< m, from the mouth to a lost cell
   DrawInterval cell_y{0, 0};               ///< m
   DrawInterval tip_y{0, 0};                ///< m
   DrawInterval inclination{0, 0.5};        ///< rad, of the shaft out of the image plane; positive away from the camera
