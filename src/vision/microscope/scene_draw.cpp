@@ -129,7 +129,7 @@ class SceneMaker {
     pipette.optics.lumen = random_.within(0, 0.25);
     const bool lost = has_cell_ && config_.lost > 0 && random_.chance(config_.lost);
     if (lost) pipette.mouth += (reachIn(pipette) + random_.within(config_.away)) * pipette.axis;
-    if (has_cell_ && !lost) drawIn(pipette);
+    if (has_cell_ && !lost) hold(pipette);
     drawn_.truth.held = has_cell_ && !lost;
     drawn_.scene.holding = pipette;
     drawn_.truth.holding = PipetteTruth{view_.pixelOf(pipette.mouth), view_.imageDirection(pipette.axis),
@@ -176,16 +176,13 @@ class SceneMaker {
   }
 
   /// Draws a tongue of the cell into the holding pipette, which presses its lip on the cell.
-  void drawIn(const HoldingPipette& pipette) {
-    CellScene& cell = drawn_.scene.cells.front();
+  void hold(const HoldingPipette& pipette) {
     const double own = reachIn(pipette);
     drawn_.truth.in_holder = own / view_.pixel_size;
     if (!(config_.in_holder > 0 && random_.chance(config_.in_holder))) return;
     const DrawingMouth mouth{pipette.mouth, pipette.axis, pipette.inner_radius,
                              own + random_.within(config_.tongue) * pipette.inner_radius};
-    cell.zona_outer = withTongue(cell.zona_outer, mouth);
-    cell.zona_inner = withTongue(cell.zona_inner, mouth.within(zona_));
-    cell.ooplasm = withTongue(cell.ooplasm, mouth.within(zona_ + gap_));
+    drawIn(mouth, zona_, gap_, drawn_.scene.cells.front());
     drawn_.truth.in_holder = mouth.length / view_.pixel_size;
   }
 

@@ -53,12 +53,7 @@ CellScene cellScene(const SpecimenConfig& config, const Specimen& specimen, cons
                                                                          std::sin(config.polar_body_angle)));
     cell.polar_body = CellBody::polarBody({body.x(), body.z()}, config.polar_body_radius * radius);
   }
-  const auto mouth = drawingMouth(config, specimen);
-  if (!mouth) return cell;
-  const double ooplasm = zona > 0 ? zona + gap : 0;
-  cell.zona_outer = withTongue(cell.zona_outer, *mouth);
-  cell.zona_inner = withTongue(cell.zona_inner, mouth->within(zona));
-  cell.ooplasm = withTongue(cell.ooplasm, mouth->within(ooplasm));
+  if (const auto mouth = drawingMouth(config, specimen)) drawIn(*mouth, zona, gap, cell);
   return cell;
 }
 

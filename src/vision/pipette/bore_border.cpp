@@ -216,11 +216,15 @@ class BoreSearch {
     return false;
   }
 
-  /// The border that is farthest from the mouth: a column is full of granules, and behind it is nothing. Models of
-  /// several widths see one border at places that are a few rows apart.
+  /// The border that is farthest from the mouth: a column is full of granules, and behind it is nothing. Of a cell a
+  /// clear one, since what is in a wide mouth may be faint. Models of several widths see one border at places that are
+  /// a few rows apart.
   const BoreCandidate* farthest() const {
-    const auto last = std::find_if(rows_best_.rbegin(), rows_best_.rend(),
-                                   [](const BoreCandidate& each) { return each.fit.gain > 0; });
+    auto last = std::find_if(rows_best_.rbegin(), rows_best_.rend(),
+                             [&](const BoreCandidate& each) { return view_.is_cell && isClear(each); });
+    if (last == rows_best_.rend())
+      last = std::find_if(rows_best_.rbegin(), rows_best_.rend(),
+                          [](const BoreCandidate& each) { return each.fit.gain > 0; });
     if (last == rows_best_.rend()) return nullptr;
     const BoreCandidate* best = &*last;
     for (auto other = last; other != rows_best_.rend() && last->row - other->row < view_.one_border; ++other) {

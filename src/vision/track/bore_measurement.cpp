@@ -5,7 +5,10 @@ namespace microinjection {
 void measureBores(const Frame& frame, ContrastMode mode, SpecimenView& view) {
   view.hold = cellHold(view.cell, view.holding);
   view.column = findColumn(frame, view.injection);
-  view.tongue = findTongue(frame, view.holding, view.cell.zona_outer.finding.hasValues());
+  view.tongue = BoreBorder();
+  view.tongue.finding = Finding::notFound("no cell was found");
+  if (view.cell.finding.hasValues())
+    view.tongue = findTongue(frame, view.holding, view.cell.zona_outer.finding.hasValues());
   // An outline that misses the mouth, in which something is seen, may not be the cell's outermost one.
   const bool contradicted = view.tongue.finding.hasValues() && view.hold.finding.isFound() && !view.hold.held;
   if (contradicted) view.hold.finding = Finding::uncertain("something is seen in the mouth");

@@ -99,8 +99,8 @@ TEST(TongueOutline, ReachesItsLengthAndKeepsTheRest) {
     if (corner.y() < mouth.place.y() - 30e-6) widest = std::max(widest, std::abs(corner.x()));
   }
   EXPECT_NEAR(widest, std::sqrt(15e-6 * 15e-6 - 5e-6 * 5e-6), 0.3e-6);
-  mouth.length = 1e-6;  // the circle reaches farther by itself
-  mouth.place.y() -= 5e-6;
+  mouth.length = 6e-6;  // the circle reaches farther by itself
+  mouth.place.y() += 5e-6;
   EXPECT_EQ(withTongue(circle, mouth), circle);
   mouth.place.x() = 200e-6;
   mouth.length = 40e-6;
