@@ -19,6 +19,21 @@ VisionCondition condition(const std::string& name, const SceneDrawConfig& draw) 
   return result;
 }
 
+/// Needles that have a bore to see, in half of which is a column; before, at, on and in cells that a mouth draws in,
+/// does not draw in, or has lost.
+SceneDrawConfig bores() {
+  SceneDrawConfig draw = usual();
+  draw.cell = 0.9;
+  draw.dimple = 0.3;
+  draw.inside = 0.3;
+  draw.in_needle = 0.5;
+  draw.in_holder = 0.7;
+  draw.lost = 0.2;
+  draw.tip_radius = {2e-6, 5e-6};
+  draw.inclination = {0, 0.12};
+  return draw;
+}
+
 }  // namespace
 
 std::vector<VisionCondition> visionConditions() {
@@ -56,6 +71,15 @@ std::vector<VisionCondition> visionConditions() {
   SceneDrawConfig pipettes = usual();
   pipettes.cell = 0;
   all.push_back(condition("pipettes_only", pipettes));
+  all.push_back(condition("bore", bores()));
+  all.push_back(condition("bore_noise", bores()));
+  all.back().microscope.sensor.gain = 8;
+  all.push_back(condition("bore_defocus", bores()));
+  all.back().focus = 4e-6;
+  SceneDrawConfig coarse = bores();
+  coarse.diameter = {90e-6, 140e-6};
+  all.push_back(condition("bore_coarse", coarse));
+  all.back().microscope.camera.pixel_size = 0.4e-6;
   return all;
 }
 

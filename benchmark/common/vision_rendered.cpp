@@ -8,6 +8,7 @@
 #include "benchmark/common/tracked_time.h"
 #include "benchmark/common/vision_cases.h"
 #include "vision/microscope/microscope.h"
+#include "vision/track/bore_measurement.h"
 #include "vision/track/frame_search.h"
 #include "vision/track/specimen_tracker.h"
 
@@ -15,7 +16,8 @@ namespace microinjection {
 namespace {
 
 // The goals, px and degrees.
-constexpr double kCentre = 0.15, kZona = 0.5, kTip = 0.2, kMouth = 0.5, kAxis = 0.2, kDimple = 0.3, kPolarBody = 2;
+constexpr double kCentre = 0.15, kZona = 0.5, kTip = 0.2, kMouth = 0.5, kAxis = 0.2, kDimple = 0.3, kPolarBody = 2,
+                 kBore = 0.3;
 constexpr double kDiameter = 0.003;  // of the diameter
 constexpr double kInDegrees = 180 / M_PI;
 const cv::Point2d kMoved(4, -3);  // px, that a pipette is thought to be off before it is tracked
@@ -71,8 +73,7 @@ class ImageRows {
     row.time = time;
     take_(row);
   }
-
- private:
+  void take(const VisionRow& row) const { take_(row); }
   VisionRow rowFor(const std::string& what, const Finding& finding, double time) const {
     VisionRow row{set_, image_, what};
     row.found = finding.hasValues();
@@ -83,6 +84,7 @@ class ImageRows {
     return row;
   }
 
+ private:
   std::string set_, image_;
   const TakeRow& take_;
 };
@@ -183,6 +185,29 @@ void seenRows(const ImageRows& rows, const SeenCell& seen, const SceneTruth& tru
            seen.indentation);
 }
 
+/// What is in the bores, and whether the cell is at the mouth. A tongue that is shorter than this is not looked for.
+constexpr double kShortTongue = 16;  // px
+
+void boreRows(const ImageRows& rows, const Frame& frame, const PipetteDetection& holding, SpecimenView view,
+              const SceneTruth& truth) {
+  view.holding = holding;
+  double time = 0;
+  timed(time, [&] {
+    measureBores(frame, ContrastMode::kBrightField, view);
+    return true;
+  });
+  const auto add = [&](const std::string& what, const BoreBorder& border, const std::optional<double>& length) {
+    if (!length) return rows.addAbsent(what + "_absent", border.finding, time);
+    rows.add(what, border.finding, stated(border.length - *length, border.deviation), *length, kBore, time);
+  };
+  add("column", view.column, truth.in_needle);
+  if (!truth.in_holder || *truth.in_holder > kShortTongue) add("tongue", view.tongue, truth.in_holder);
+  if (!truth.cell) return rows.addAbsent("hold_absent", view.hold.finding, time);
+  VisionRow row = rows.rowFor(truth.held ? "held" : "lost", view.hold.finding, time);
+  row.wrong = row.sure && view.hold.held != truth.held;
+  rows.take(row);
+}
+
 /// Times of whole frames, as the node vision has them: of the first one, which is searched, and of the same one again,
 /// in which what was found is tracked. With `_missing` where cell, tip or mouth was not found.
 void frameTimeRows(const ImageRows& rows, const SpecimenTrackerConfig& config, const std::shared_ptr<SecondEye>& eye,
@@ -236,10 +261,11 @@ void renderedRows(const VisionCondition& condition, std::uint64_t first, int ima
     SeenCell seen;
     if (!pipettes_only) seen = seenCell(detector, frame, search);
     const PipetteDetection needle = pipetteRows(rows, "tip", frame, injection, search, drawn.truth.injection, kTip);
-    pipetteRows(rows, "mouth", frame, holding, search, drawn.truth.holding, kMouth);
+    const PipetteDetection mouth = pipetteRows(rows, "mouth", frame, holding, search, drawn.truth.holding, kMouth);
     if (pipettes_only) continue;
     addNeedle(frame, needle, seen);
     seenRows(rows, seen, drawn.truth, reading);
+    if (condition.draw.in_needle > 0) boreRows(rows, frame, mouth, seen.found, drawn.truth);
     frameTimeRows(rows, config, eye, drawn.image);
   }
 }

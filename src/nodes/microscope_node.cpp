@@ -1,6 +1,7 @@
 #include "nodes/microscope_node.h"
 
 #include <algorithm>
+#include <cmath>
 #include <opencv2/core/utility.hpp>
 
 #include "nodes/display/cell_state_reader.h"
@@ -14,7 +15,7 @@ const char* const MicroscopeNode::kHelp =
     "microscope: the virtual microscope. Renders the session as its camera sees it.\n"
     "In: /cell/state, /needle/measured_cp or /needle/true_cp, tf of cell and holding_pipette, /focus/move_jp "
     "(JointState:\n"
-    "the plane in focus, m).\n"
+    "the plane in focus, m), /cell/bore /cell/held_tongue.\n"
     "Out: microscope/image_raw microscope/camera_info /focus/measured_js.\n";
 
 MicroscopeNode::Parameters MicroscopeNode::Parameters::read(const Bus& bus) {
@@ -48,6 +49,8 @@ MicroscopeNode::MicroscopeNode(Bus& bus)
   state_ = subscribeGuarded(bus, "/cell/state", kQueue, &MicroscopeNode::onState, this);
   needle_ = subscribeGuarded(bus, parameters_.needle == "true" ? "/needle/true_cp" : "/needle/measured_cp", kQueue,
                              &MicroscopeNode::onNeedle, this);
+  bore_ = subscribeGuarded(bus, "/cell/bore", kQueue, &MicroscopeNode::onBore, this);
+  held_tongue_ = subscribeGuarded(bus, "/cell/held_tongue", kQueue, &MicroscopeNode::onHeldTongue, this);
   focus_command_ = subscribeGuarded(bus, "/focus/move_jp", kQueue, &MicroscopeNode::onFocus, this, StampRule::kCommand);
   diagnostics_.add("images", this, &MicroscopeNode::report);
   timer_ = bus.timer(1 / parameters_.rate, [this] { step(); });
@@ -65,6 +68,7 @@ void MicroscopeNode::onState(const cell_microinjection::CellState& message) {
   specimen_.triangles = std::move(surface.triangles);
   specimen_.radius = 0.5 * cellParameter(message, "diameter").value_or(0);
   specimen_.shell_thickness = cellParameter(message, "shell_thickness").value_or(0);
+  punctured_ = message.punctured;
   received_ = bus_.steady();
 }
 
@@ -73,8 +77,42 @@ void MicroscopeNode::onNeedle(const geometry_msgs::PoseStamped& message) {
   needle_receipt_ = {message.header.stamp, bus_.steady()};
 }
 
-bool MicroscopeNode::needleIsFresh() const {
-  return specimen_.needle && !needle_receipt_.isOld(parameters_.state_timeout, bus_.now(), bus_.steady());
+void MicroscopeNode::onBore(const cell_microinjection::BoreState& message) {
+  if (!std::isfinite(message.length) || message.length < 0) {
+    bus_.refusals().add("/cell/bore", "its length is not at or above 0");
+    return;
+  }
+  // Only an intact membrane has a tension.
+  const bool whole = !punctured_ || message.tension > 0;
+  specimen_.in_needle.reset();
+  if (message.length > 0) specimen_.in_needle = Specimen::InNeedle{message.length, !whole};
+  bore_receipt_ = {message.header.stamp, bus_.steady()};
+}
+
+void MicroscopeNode::onHeldTongue(const cell_microinjection::HeldTongue& message) {
+  if (!std::isfinite(message.length) || message.length < 0) {
+    bus_.refusals().add("/cell/held_tongue", "its length is not at or above 0");
+    return;
+  }
+  specimen_.in_holder = message.length;
+  held_receipt_ = {message.header.stamp, bus_.steady()};
+}
+
+bool MicroscopeNode::isFresh(const Receipt& receipt) const {
+  return !receipt.isOld(parameters_.state_timeout, bus_.now(), bus_.steady());
+}
+
+bool MicroscopeNode::needleIsFresh() const { return specimen_.needle && isFresh(needle_receipt_); }
+
+Specimen MicroscopeNode::specimen() const {
+  Specimen specimen = specimen_;
+  if (!needleIsFresh()) specimen.needle.reset();
+  if (!isFresh(bore_receipt_)) specimen.in_needle.reset();
+  if (!isFresh(held_receipt_)) specimen.in_holder = 0;
+  specimen.cell = *frames_.find("world", cell_frame_);
+  for (Eigen::Vector3d& vertex : specimen.vertices) vertex = specimen.cell * vertex;
+  specimen.holder = frames_.find("world", "holding_pipette");
+  return specimen;
 }
 
 void MicroscopeNode::onFocus(const sensor_msgs::JointState& message) {
@@ -102,13 +140,8 @@ void MicroscopeNode::step() {
   const ros::Time now = bus_.now();
   publishFocus(now);
   if (images_.wanted() && missingInput().empty()) {
-    Specimen specimen = specimen_;
-    if (!needleIsFresh()) specimen.needle.reset();
-    const Eigen::Isometry3d cell = *frames_.find("world", cell_frame_);
-    for (Eigen::Vector3d& vertex : specimen.vertices) vertex = cell * vertex;
-    specimen.holder = frames_.find("world", "holding_pipette");
     runGuarded(bus_.refusals(), "microscope/image_raw", [&] {
-      const MicroscopeScene scene = specimenScene(parameters_.specimen, specimen);
+      const MicroscopeScene scene = specimenScene(parameters_.specimen, specimen());
       images_.publish(microscope_.render(scene, focus_.position(), ++frame_), now);
       ++rendered_;
     });

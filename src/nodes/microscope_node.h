@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cell_microinjection/BoreState.h>
 #include <cell_microinjection/CellState.h>
+#include <cell_microinjection/HeldTongue.h>
 #include <geometry_msgs/PoseStamped.h>
 #include <sensor_msgs/JointState.h>
 
@@ -20,13 +22,14 @@ namespace microinjection {
 /// The virtual microscope: renders the session's scene as a microscope's camera sees it.
 ///
 /// In:  /cell/state, /needle/measured_cp or /needle/true_cp, tf of cell and holding_pipette in world,
-///      /focus/move_jp (JointState, position[0]: m, the world's y of the plane in focus)
+///      /focus/move_jp (JointState, position[0]: m, the world's y of the plane in focus), /cell/bore (BoreState: what
+///      the needle has drawn in), /cell/held_tongue (HeldTongue: what the holding pipette has)
 /// Out: microscope/image_raw, microscope/camera_info, /focus/measured_js
 ///
 /// Parameters: config/microscope.yaml
 ///
 /// It keeps its rate in steady time, as a camera does. While /cell/state is stale or not finite it publishes no
-/// image: a picture of the past must not look like a new one.
+/// image: a picture of the past must not look like a new one. Bores whose state is silent or stale are empty.
 class MicroscopeNode {
  public:
   static const char* const kHelp;
@@ -47,8 +50,12 @@ class MicroscopeNode {
 
   void onState(const cell_microinjection::CellState& message);
   void onNeedle(const geometry_msgs::PoseStamped& message);
+  void onBore(const cell_microinjection::BoreState& message);
+  void onHeldTongue(const cell_microinjection::HeldTongue& message);
   void onFocus(const sensor_msgs::JointState& message);
+  bool isFresh(const Receipt& receipt) const;
   bool needleIsFresh() const;
+  Specimen specimen() const;         ///< as it is now, in the world; @pre missingInput() is empty
   std::string missingInput() const;  ///< why there is no image; empty when there is one
   void step();
   void publishFocus(const ros::Time& now);
@@ -64,13 +71,14 @@ class MicroscopeNode {
   std::string cell_frame_;  ///< of the last state
   std::string defect_;      ///< of the last state; empty: it can be drawn
   ros::SteadyTime received_, stepped_, reported_;
-  Receipt needle_receipt_;
+  Receipt needle_receipt_, bore_receipt_, held_receipt_;
+  bool punctured_ = false;     ///< of the last state: a layer has failed
   std::uint64_t frame_ = 0;    ///< number of images, which seeds their noise
   unsigned rendered_ = 0;      ///< since reported_
   double longest_render_ = 0;  ///< s, since reported_
 
   Publisher<sensor_msgs::JointState> focus_state_;
-  Subscription state_, needle_, focus_command_;
+  Subscription state_, needle_, bore_, held_tongue_, focus_command_;
   Diagnostics diagnostics_;
   BusHandle timer_;
 };

@@ -34,7 +34,7 @@ void fill(const std::optional<MeasuredLength>& length, double& value, double& in
 const char* const VisionNode::kHelp =
     "vision: finds cell and pipettes in the microscope's images.\n"
     "In: microscope/image_raw.\n"
-    "Out: vision/state vision/image_overlay, service vision/measure_cell.\n";
+    "Out: vision/state vision/image_overlay /needle/interface, service vision/measure_cell.\n";
 
 VisionNode::Parameters VisionNode::Parameters::read(const Bus& bus) {
   Parameters parameters;
@@ -53,6 +53,7 @@ VisionNode::VisionNode(Bus& bus)
       tracker_(parameters_.vision.tracker, parameters_.vision.secondEye()),
       served_(bus, parameters_.vision.serve_timeout),
       state_(bus.advertise<cell_microinjection::VisionState>("vision/state", 1)),
+      interface_(bus.advertise<cell_microinjection::InterfacePosition>("/needle/interface", 1)),
       overlay_(bus.advertiseImages("vision/image_overlay", 1)),
       readings_(static_cast<std::size_t>(parameters_.vision.measured_images)),
       reported_(bus.steady()),
@@ -162,6 +163,13 @@ void VisionNode::publish(const std_msgs::Header& header, const Frame& frame, dou
   state.pixel_size = pixel_size_;
   state.processing_time = processing_time;
   state_.publish(state);
+  const BoreBorder& column = tracker_.view().column;
+  if (column.finding.isFound() && pixel_size_ > 0) {
+    cell_microinjection::InterfacePosition interface;
+    interface.header = header;
+    interface.position = pixel_size_ * column.length;
+    interface_.publish(interface);
+  }
   if (!parameters_.vision.overlay || overlay_.subscribers() == 0) return;
   const cv::Mat overlay = drawOverlay(frame, tracker_.view().overlay());
   overlay_.publish(cv_bridge::CvImage(header, "bgr8", overlay).toImageMsg());
@@ -244,6 +252,9 @@ void VisionNode::report(diagnostic_updater::DiagnosticStatusWrapper& status) {
   add("injection pipette", view.injection.finding);
   add("holding pipette", view.holding.finding);
   add("indentation", view.indentation.finding);
+  add("in the needle", view.column.finding);
+  add("tongue in the holding pipette", view.tongue.finding);
+  add(view.hold.held ? "cell at the mouth" : "cell away from the mouth", view.hold.finding);
   bus_.refusals().report(status);
   status.add("rate (Hz)", accepted_ / std::max(1e-9, secondsBetween(reported_, now)));
   status.add("longest image (ms of processor time)", 1e3 * longest_);

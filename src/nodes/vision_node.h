@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cell_microinjection/InterfacePosition.h>
 #include <cell_microinjection/MeasureCell.h>
 #include <cell_microinjection/VisionState.h>
 #include <sensor_msgs/Image.h>
@@ -20,8 +21,8 @@ namespace microinjection {
 /// Finds cell and pipettes in the microscope's images.
 ///
 /// In:  microscope/image_raw
-/// Out: vision/state (VisionState), vision/image_overlay; the service vision/measure_cell
-///      (MeasureCell)
+/// Out: vision/state (VisionState), vision/image_overlay, /needle/interface (InterfacePosition, of an image that surely
+///      shows what is in the needle, and whose scale is known); the service vision/measure_cell (MeasureCell)
 ///
 /// Parameters: config/vision.yaml
 ///
@@ -62,6 +63,7 @@ class VisionNode {
   SpecimenTracker tracker_;
   ServedCell served_;
   Publisher<cell_microinjection::VisionState> state_;
+  Publisher<cell_microinjection::InterfacePosition> interface_;
   Publisher<sensor_msgs::Image> overlay_;
   Subscription images_;
   Repetition<std::vector<std::uint8_t>> data_{0};  ///< of the images that arrived: noise changes each

@@ -66,6 +66,25 @@ cell_microinjection::IndentationInImage toMessage(const Dimple& indentation) {
   return message;
 }
 
+cell_microinjection::BoreInImage toMessage(const BoreBorder& border) {
+  cell_microinjection::BoreInImage message;
+  setFinding(border.finding, message);
+  if (!border.finding.hasValues()) return message;
+  message.length = border.length;
+  message.deviation = border.deviation;
+  return message;
+}
+
+cell_microinjection::HoldInImage toMessage(const CellHold& hold) {
+  cell_microinjection::HoldInImage message;
+  setFinding(hold.finding, message);
+  if (!hold.finding.hasValues()) return message;
+  message.held = hold.held;
+  message.gap = hold.gap;
+  message.deviation = hold.deviation;
+  return message;
+}
+
 }  // namespace
 
 cell_microinjection::VisionState toMessage(const SpecimenView& view) {
@@ -74,6 +93,9 @@ cell_microinjection::VisionState toMessage(const SpecimenView& view) {
   message.injection_pipette = toMessage(view.injection);
   message.holding_pipette = toMessage(view.holding);
   message.indentation = toMessage(view.indentation);
+  message.needle_bore = toMessage(view.column);
+  message.holder_bore = toMessage(view.tongue);
+  message.hold = toMessage(view.hold);
   return message;
 }
 

@@ -7,10 +7,7 @@
 namespace microinjection {
 namespace {
 
-constexpr double kDomeWidth = 20e-6;  // m, over which the thickness of a cell becomes that of its middle
-// Granules are phase objects. In phase and DIC they show by their path (rad per contrast).
-constexpr double kGranulePath = 3;
-// A cell is full of granules: however far the focus is, some are near it.
+constexpr double kDomeWidth = 20e-6;            // m, over which the thickness of a cell becomes that of its middle
 constexpr double kLargestGranuleBlur = 0.8e-6;  // m rms
 
 /// What belongs to one cell: changes add up in it, and the image is multiplied by it once.
@@ -22,7 +19,8 @@ class CellPicture {
 
   void add(const CellOutline& outline, const BodyOptics& body, double granules) {
     if (outline.empty()) return;
-    const BorderProfile profile(optics_, defocus_, stepsOf(body), body.dome, kDomeWidth / optics_.pixelSize());
+    const BorderProfile profile(optics_, defocus_, borderSteps(body, optics_.pixelSize()), body.dome,
+                                kDomeWidth / optics_.pixelSize());
     std::vector<Eigen::Vector2d> corners;
     corners.reserve(outline.size());
     for (const Eigen::Vector2d& corner : outline) corners.push_back(view_.pixelOf(corner));
@@ -47,15 +45,6 @@ class CellPicture {
   }
 
  private:
-  std::vector<BorderProfile::Step> stepsOf(const BodyOptics& body) const {
-    const double pixel = optics_.pixelSize();
-    return {{0, body.phase, body.absorption},
-            {-body.rim_outside / pixel, 0, body.rim},
-            {body.rim_inside / pixel, 0, -body.rim},
-            {0, 0, -body.line},
-            {body.line_width / pixel, 0, body.line}};
-  }
-
   /// Makes room for changes in `region`.
   void reserve(const cv::Rect& region) {
     const cv::Rect whole = region_.empty() ? region : (region_ | region);
@@ -67,9 +56,7 @@ class CellPicture {
   }
 
   cv::Mat grainsOf(const cv::Rect& region) {
-    const double blur =
-        std::min(optics_.blur(defocus_), std::max(optics_.blur(0), kLargestGranuleBlur / view_.pixel_size));
-    return texture_.sample(view_, region, cell_.material, cell_.texture_seed, blur);
+    return texture_.sample(view_, region, cell_.material, cell_.texture_seed, granuleBlur(optics_, defocus_));
   }
 
   void addBorder(const BorderProfile& profile, const OutlineDistance& border, const cv::Mat& grains, float granules) {
@@ -102,6 +89,18 @@ class CellPicture {
 };
 
 }  // namespace
+
+std::vector<BorderProfile::Step> borderSteps(const BodyOptics& body, double pixel_size) {
+  return {{0, body.phase, body.absorption},
+          {-body.rim_outside / pixel_size, 0, body.rim},
+          {body.rim_inside / pixel_size, 0, -body.rim},
+          {0, 0, -body.line},
+          {body.line_width / pixel_size, 0, body.line}};
+}
+
+double granuleBlur(const Optics& optics, double defocus) {
+  return std::min(optics.blur(defocus), std::max(optics.blur(0), kLargestGranuleBlur / optics.pixelSize()));
+}
 
 void addCell(const CellScene& cell, double focus, const CameraView& view, const Optics& optics, Texture& texture,
              OpticalImage& image) {

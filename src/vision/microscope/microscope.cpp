@@ -4,6 +4,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "base/errors.h"
+#include "vision/microscope/bore_column_layer.h"
 #include "vision/microscope/cell_layer.h"
 #include "vision/microscope/debris_layer.h"
 #include "vision/microscope/pipette_layer.h"
@@ -34,7 +35,10 @@ cv::Mat Microscope::transmission(const MicroscopeScene& scene, double focus) {
     image.path = cv::Mat(view.height, view.width, CV_32F, cv::Scalar(0));
   for (const CellScene& cell : scene.cells) addCell(cell, focus, view, optics_, texture_, image);
   if (scene.holding) addPipette(*scene.holding, focus, view, optics_, image);
-  if (scene.injection) addPipette(*scene.injection, focus, view, optics_, image);
+  if (scene.injection) {
+    addPipette(*scene.injection, focus, view, optics_, image);
+    addBoreColumn(*scene.injection, focus, view, optics_, texture_, image);
+  }
   for (const Debris& debris : scene.debris) addDebris(debris, focus, view, optics_, image);
   if (!image.path.empty()) shear(image);
   return image.transmission;

@@ -1,5 +1,6 @@
 #include "vision/microscope/microscope_scene.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -10,6 +11,7 @@ namespace {
 
 constexpr double kUnitTolerance = 1e-6;
 constexpr double kLeastInImage = 0.05;  // of an axis: its share in the image plane
+constexpr double kMeniscus = 0.25;      // of the bore's radius, bulge of the border between cytoplasm and liquid
 
 void checkOutline(ConfigErrors& errors, const std::string& name, const CellOutline& outline) {
   if (outline.empty()) return;
@@ -58,6 +60,11 @@ void checkInjection(ConfigErrors& errors, const InjectionPipette& pipette) {
                  "at least tip_radius");
   errors.require(Range::open(0, 1), "injection wall", pipette.wall);
   errors.require(Range::closed(0, 1), "injection taper", pipette.taper);
+  if (!pipette.column) return;
+  errors.require(Range::positive(), "bore column length", pipette.column->length, " m");
+  const double bore = (1 - pipette.wall) * pipette.tip_radius;
+  errors.require(pipette.column->bulge >= 0 && pipette.column->bulge <= bore, "bore column bulge",
+                 pipette.column->bulge, " m", "from 0 to the bore's radius");
 }
 
 }  // namespace
@@ -83,6 +90,22 @@ CellBody CellBody::polarBody(const Eigen::Vector2d& centre, double radius) {
 
 CellBody CellBody::nucleus(const Eigen::Vector2d& centre, double radius) {
   return {centre, radius, {-0.20, -0.03, 0.14, 0.5e-6, 0.5e-6, 0.04, 0.6e-6, 0, -0.04}};
+}
+
+BoreColumn BoreColumn::tongue(double length, double bore_radius) {
+  BoreColumn column;
+  column.length = length;
+  column.bulge = std::min(length, bore_radius);
+  return column;
+}
+
+BoreColumn BoreColumn::cytoplasm(double length, double bore_radius) {
+  BoreColumn column;
+  column.length = length;
+  column.bulge = kMeniscus * bore_radius;
+  column.optics.rim = 0.25;
+  column.optics.line = 0.08;
+  return column;
 }
 
 CellScene CellScene::round(const Eigen::Vector2d& centre, double radius, double zona_thickness,

@@ -78,6 +78,19 @@ struct HoldingPipette {
   PipetteOptics optics{0.65, 0.2, 0.8, 0.1, 0.5, 1.5e-6};
 };
 
+/// What a needle has drawn into its bore: a column of the cell's inside, from the mouth to a cap.
+struct BoreColumn {
+  double length = 0;  ///< m along the axis, from the mouth to the middle of the cap; above 0
+  double bulge = 0;   ///< m, of the cap's middle ahead of its edge
+  std::uint64_t texture_seed = 1;
+  BodyOptics optics{0.5, 0.10, 0.42, 0, 1.6e-6, 0.22, 0.8e-6, 0, 0.085};
+
+  /// Behind a whole membrane, which the bore's edge rounds: a cap of at most half a sphere.
+  static BoreColumn tongue(double length, double bore_radius);
+  /// After the membrane has broken: cytoplasm up to its border with the pipette's own liquid, nearly flat.
+  static BoreColumn cytoplasm(double length, double bore_radius);
+};
+
 /// The needle. Its end is cut straight; the tube widens behind it.
 struct InjectionPipette {
   Eigen::Vector3d tip{0, 0, 0};   ///< m, (x, y, z): the end of the axis
@@ -87,6 +100,7 @@ struct InjectionPipette {
   double taper = 0.06;            ///< growth of the radius over the length
   double shaft_radius = 40e-6;    ///< m, where the taper ends
   PipetteOptics optics;
+  std::optional<BoreColumn> column{};  ///< none: the bore is empty
 };
 
 /// Something beside the cell, a disc in its own plane.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/config_errors.h"
+#include "vision/microscope/tongue_outline.h"
 
 namespace microinjection {
 namespace {
@@ -53,6 +54,8 @@ class SceneMaker {
     ellipticity_ = config_.centred ? 0 : random_.within(0, config_.ellipticity);
     angle_ = random_.within(0, M_PI);
     const double inner = radius_ - zona, ooplasm = inner - gap;
+    zona_ = zona;
+    gap_ = gap;
     const Eigen::Vector2d ooplasm_centre = centre_ + random_.within(0, 0.5) * gap * unit(random_.within(-M_PI, M_PI));
     cell.zona_outer = outlineOf(centre_, radius_);
     cell.zona_inner = outlineOf(centre_, inner);
@@ -124,6 +127,10 @@ class SceneMaker {
     pipette.optics.wall = random_.chance(0.25) ? -random_.within(0.3, 0.7) : random_.within(0.4, 0.8);
     pipette.optics.core = random_.within(0.05, 0.4);
     pipette.optics.lumen = random_.within(0, 0.25);
+    const bool lost = has_cell_ && config_.lost > 0 && random_.chance(config_.lost);
+    if (lost) pipette.mouth += (reachIn(pipette) + random_.within(config_.away)) * pipette.axis;
+    if (has_cell_ && !lost) hold(pipette);
+    drawn_.truth.held = has_cell_ && !lost;
     drawn_.scene.holding = pipette;
     drawn_.truth.holding = PipetteTruth{view_.pixelOf(pipette.mouth), view_.imageDirection(pipette.axis),
                                         pipette.outer_radius / view_.pixel_size, pipette.y};
@@ -134,7 +141,7 @@ class SceneMaker {
     const double tilt = random_.within(-config_.tilt, config_.tilt), rise = random_.within(config_.inclination);
     const Eigen::Vector2d axis(std::sin(tilt), std::cos(tilt));
     pipette.axis = {std::cos(rise) * axis.x(), std::sin(rise), std::cos(rise) * axis.y()};
-    pipette.tip_radius = random_.within(0.4e-6, 3e-6);
+    pipette.tip_radius = random_.within(config_.tip_radius);
     pipette.taper = random_.within(0.03, 0.14);
     pipette.wall = random_.within(0.15, 0.4);
     pipette.shaft_radius = random_.within(20e-6, 60e-6);
@@ -144,12 +151,44 @@ class SceneMaker {
     pipette.optics.lumen = random_.within(0.1, 0.5);
     const Eigen::Vector2d tip = has_cell_ && random_.chance(config_.dimple) ? indent(axis) : placeOfTip(axis);
     pipette.tip = {tip.x(), random_.within(config_.tip_y), tip.y()};
+    if (config_.in_needle > 0 && random_.chance(config_.in_needle)) fill(pipette);
     drawn_.scene.injection = pipette;
     drawn_.truth.injection = PipetteTruth{view_.pixelOf(tip), view_.imageDirection(axis),
                                           pipette.tip_radius / view_.pixel_size, pipette.tip.y()};
   }
 
+  /// Draws a column into the needle, of a whole membrane or of cytoplasm.
+  void fill(InjectionPipette& pipette) {
+    const double length = random_.within(config_.column), bore = (1 - pipette.wall) * pipette.tip_radius;
+    pipette.column = random_.chance(0.5) ? BoreColumn::tongue(length, bore) : BoreColumn::cytoplasm(length, bore);
+    pipette.column->texture_seed = random_.bits() % 4096;
+    const double strength = random_.within(0.7, 1.4);
+    BodyOptics& optics = pipette.column->optics;
+    for (double* value : {&optics.phase, &optics.absorption, &optics.rim, &optics.line}) *value *= strength;
+    optics.granules *= random_.within(0.3, 1.2);
+    const double in_image = Eigen::Vector2d(pipette.axis.x(), pipette.axis.z()).norm();
+    drawn_.truth.in_needle = length * in_image / view_.pixel_size;
+  }
+
+  /// m, that the cell reaches into the mouth without suction.
+  double reachIn(const HoldingPipette& pipette) const {
+    return (centre_ + distanceToBorder(pipette.axis) * pipette.axis - pipette.mouth).dot(pipette.axis);
+  }
+
+  /// Draws a tongue of the cell into the holding pipette, which presses its lip on the cell.
+  void hold(const HoldingPipette& pipette) {
+    const double own = reachIn(pipette);
+    drawn_.truth.in_holder = own / view_.pixel_size;
+    if (!(config_.in_holder > 0 && random_.chance(config_.in_holder))) return;
+    const DrawingMouth mouth{pipette.mouth, pipette.axis, pipette.inner_radius,
+                             own + random_.within(config_.tongue) * pipette.inner_radius};
+    drawIn(mouth, zona_, gap_, drawn_.scene.cells.front());
+    drawn_.truth.in_holder = mouth.length / view_.pixel_size;
+  }
+
   Eigen::Vector2d placeOfTip(const Eigen::Vector2d& axis) {
+    if (has_cell_ && config_.inside > 0 && random_.chance(config_.inside))
+      return centre_ + radius_ * random_.within(0.2, 0.9) * axis;
     const double away = (has_cell_ ? radius_ : 0) + random_.within(3e-6, 40e-6);
     const Eigen::Vector2d across(axis.y(), -axis.x());
     return centre_ + away * axis + random_.within(-15e-6, 15e-6) * across;
@@ -219,7 +258,8 @@ class SceneMaker {
   Eigen::Vector2d centre_{0, 0};
   bool has_cell_ = false;
   double radius_ = 0, ellipticity_ = 0, angle_ = 0;
-  double tilt_ = 0;  ///< rad, of the holding pipette
+  double zona_ = 0, gap_ = 0;  ///< m, thickness of the zona and of the gap within it
+  double tilt_ = 0;            ///< rad, of the holding pipette
 };
 
 }  // namespace
@@ -233,6 +273,10 @@ void SceneDrawConfig::validate() const {
   probability("holding", holding);
   probability("injection", injection);
   probability("dimple", dimple);
+  probability("inside", inside);
+  probability("lost", lost);
+  probability("in_needle", in_needle);
+  probability("in_holder", in_holder);
   errors.require(Range::closed(0, 1000), "dust", dust);
   errors.require(Range::closed(0, 1000), "bubbles", bubbles);
   const auto interval = [&](const char* key, const DrawInterval& value, const Range& range) {
@@ -244,6 +288,10 @@ void SceneDrawConfig::validate() const {
   interval("zona", zona, Range::closed(0.001, 0.4));
   interval("gap", gap, Range::closed(0, 0.4));
   interval("dimple_depth", dimple_depth, Range::nonNegative());
+  interval("tip_radius", tip_radius, Range::positive());
+  interval("column", column, Range::positive());
+  interval("tongue", tongue, Range::positive());
+  interval("away", away, Range::positive());
   interval("cell_y", cell_y, Range::finite());
   interval("tip_y", tip_y, Range::finite());
   interval("inclination", inclination, Range::closed(-1.4, 1.4));

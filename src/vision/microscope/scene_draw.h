@@ -16,8 +16,12 @@ struct SceneDrawConfig {
   double polar_body = 0.7;                 ///< of a cell with zona, probability
   double nucleus = 0.4;                    ///< probability
   double holding = 0.7;                    ///< probability; holds the cell if there is one
+  double lost = 0;                         ///< that the cell has left it, probability
   double injection = 0.7;                  ///< probability
   double dimple = 0.4;                     ///< that the injection pipette indents the cell, probability
+  double inside = 0;                       ///< that its tip is in the cell, of one that does not indent it, probability
+  double in_needle = 0;                    ///< that it has drawn in a column, probability
+  double in_holder = 0;                    ///< that the holding pipette has drawn in more of a held cell, probability
   int dust = 4;                            ///< at most
   int bubbles = 0;                         ///< at most
   bool centred = false;                    ///< the cell is at the world's origin and round
@@ -27,6 +31,10 @@ struct SceneDrawConfig {
   double ellipticity = 0.03;               ///< largest (a - b) / (a + b)
   double place = 0.2;                      ///< largest offset of the cell from the middle of the image, over its sides
   DrawInterval dimple_depth{2e-6, 12e-6};  ///< m
+  DrawInterval tip_radius{0.4e-6, 3e-6};   ///< m, outer, of the injection pipette
+  DrawInterval column{4e-6, 30e-6};        ///< m, length
+  DrawInterval tongue{0.1, 0.6};           ///< length beyond what the mouth has of the cell at rest, over its radius
+  DrawInterval away{5e-6, 40e-6};          ///< m, from the mouth to a lost cell
   DrawInterval cell_y{0, 0};               ///< m
   DrawInterval tip_y{0, 0};                ///< m
   DrawInterval inclination{0, 0.5};        ///< rad, of the shaft out of the image plane; positive away from the camera
@@ -62,6 +70,10 @@ struct PipetteTruth {
 struct SceneTruth {
   std::optional<CellTruth> cell;
   std::optional<PipetteTruth> holding, injection;
+  /// px in the image along the pipette's axis, from its end to the end of what is in it; none: nothing. A mouth that
+  /// holds a cell has a part of it without any suction.
+  std::optional<double> in_needle, in_holder;
+  bool held = false;  ///< the cell is at the holding pipette's mouth
 };
 
 struct DrawnScene {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "vision/microscope/section_outline.h"
+#include "vision/microscope/tongue_outline.h"
 
 namespace microinjection {
 namespace {
@@ -18,8 +19,20 @@ std::optional<Eigen::Vector2d> inImage(const Eigen::Vector3d& axis) {
   return seen.normalized();
 }
 
+/// The holding pipette's mouth with what it has drawn in; none: nothing.
+std::optional<DrawingMouth> drawingMouth(const SpecimenConfig& config, const Specimen& specimen) {
+  if (!specimen.holder || !(specimen.in_holder > 0)) return std::nullopt;
+  const auto axis = inImage(specimen.holder->linear().col(2));
+  if (!axis) return std::nullopt;
+  const Eigen::Vector3d mouth = specimen.holder->translation();
+  return DrawingMouth{{mouth.x(), mouth.z()}, *axis, config.holding_pipette.mouth_radius, specimen.in_holder};
+}
+
 CellScene cellScene(const SpecimenConfig& config, const Specimen& specimen, const CellOutline& outline) {
   CellScene cell;
+  const Eigen::Vector3d place = specimen.cell.translation();
+  cell.y = place.y();
+  cell.material = {place.x(), place.z()};
   const double radius = specimen.radius;
   const double zona = specimen.shell_thickness > 0 ? specimen.shell_thickness : config.zona_thickness * radius;
   const double gap = config.perivitelline_gap * radius;
@@ -35,11 +48,12 @@ CellScene cellScene(const SpecimenConfig& config, const Specimen& specimen, cons
     cell.cytoplasm.line = 0;
   }
   if (config.polar_body_radius > 0) {
-    const double place = radius - zona - config.polar_body_radius * radius;
-    cell.polar_body = CellBody::polarBody(
-        place * Eigen::Vector2d(std::cos(config.polar_body_angle), std::sin(config.polar_body_angle)),
-        config.polar_body_radius * radius);
+    const double away = radius - zona - config.polar_body_radius * radius;
+    const Eigen::Vector3d body = specimen.cell * (away * Eigen::Vector3d(std::cos(config.polar_body_angle), 0,
+                                                                         std::sin(config.polar_body_angle)));
+    cell.polar_body = CellBody::polarBody({body.x(), body.z()}, config.polar_body_radius * radius);
   }
+  if (const auto mouth = drawingMouth(config, specimen)) drawIn(*mouth, zona, gap, cell);
   return cell;
 }
 
@@ -87,7 +101,7 @@ SpecimenConfig SpecimenConfig::read(ConfigReader& reader) {
 
 MicroscopeScene specimenScene(const SpecimenConfig& config, const Specimen& specimen) {
   MicroscopeScene scene;
-  const CellOutline outline = sectionOutline(specimen.vertices, specimen.triangles, 0);
+  const CellOutline outline = sectionOutline(specimen.vertices, specimen.triangles, specimen.cell.translation().y());
   if (!outline.empty()) scene.cells.push_back(cellScene(config, specimen, outline));
   if (specimen.holder) {
     if (const auto axis = inImage(specimen.holder->linear().col(2))) {
@@ -109,6 +123,11 @@ MicroscopeScene specimenScene(const SpecimenConfig& config, const Specimen& spec
     pipette.wall = config.injection_pipette.wall;
     pipette.taper = config.injection_pipette.taper;
     pipette.shaft_radius = config.injection_pipette.shaft_radius;
+    if (specimen.in_needle && specimen.in_needle->length > 0) {
+      const double bore = (1 - pipette.wall) * pipette.tip_radius, length = specimen.in_needle->length;
+      pipette.column =
+          specimen.in_needle->broken ? BoreColumn::cytoplasm(length, bore) : BoreColumn::tongue(length, bore);
+    }
     scene.injection = pipette;
   }
   scene.debris = debris(config);

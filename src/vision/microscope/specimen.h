@@ -36,17 +36,25 @@ struct SpecimenConfig {
 
 /// What a session knows of the things under the microscope, in the world (m).
 struct Specimen {
-  std::vector<Eigen::Vector3d> vertices;  ///< of the cell's surface
+  /// What the needle has drawn in.
+  struct InNeedle {
+    double length = 0;    ///< m from the mouth
+    bool broken = false;  ///< cytoplasm, instead of a tongue of the whole membrane
+  };
+  std::vector<Eigen::Vector3d> vertices;                   ///< of the cell's surface
+  Eigen::Isometry3d cell = Eigen::Isometry3d::Identity();  ///< pose of the cell, with which its inside moves
   std::vector<std::array<int, 3>> triangles;
   double radius = 0;                        ///< m, of the undeformed cell
   double shell_thickness = 0;               ///< m, of the outer layer; 0: none
   std::optional<Eigen::Isometry3d> needle;  ///< origin at the tip, z along the pipette, away from the cell
   std::optional<Eigen::Isometry3d> holder;  ///< origin at the mouth, z away from the cell
+  std::optional<InNeedle> in_needle;        ///< none: the bore is empty
+  double in_holder = 0;  ///< m, that the cell reaches from the mouth into the holding pipette; 0: as its surface does
 };
 
-/// The picture's scene: the section of the cell's surface in the plane y = 0, the layers as its
-/// insets, and the pipettes. A pipette along the line of sight is left out. The cell has no outline
-/// when its surface has no closed section.
+/// The picture's scene: the section of the cell's surface in the plane of constant y through the cell's origin, the
+/// layers as its insets, the pipettes, and the tongues in these. A pipette along the line of sight is left out. The
+/// cell has no outline when its surface has no closed section.
 MicroscopeScene specimenScene(const SpecimenConfig& config, const Specimen& specimen);
 
 }  // namespace microinjection

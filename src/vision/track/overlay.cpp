@@ -104,6 +104,21 @@ void drawPipette(cv::Mat& image, const PipetteDetection& pipette, const char* na
              colour);
 }
 
+/// A line across the bore, dashed where it is uncertain.
+void drawBore(cv::Mat& image, const BoreBorder* border, const PipetteDetection* pipette, const char* name,
+              const cv::Scalar& colour, Legend& legend) {
+  if (border == nullptr || pipette == nullptr || !border->finding.hasValues()) return;
+  const cv::Point2d across(-std::sin(pipette->direction), std::cos(pipette->direction));
+  const double half = 0.5 * pipette->half_width;
+  for (const double side : {-1.0, 1.0}) {
+    const double first = border->finding.isFound() ? 0 : 0.4 * half;
+    line(image, border->place + side * first * across, border->place + side * half * across, colour);
+  }
+  legend.add(std::string(name) + format(" %.1f +- %.1f px", border->length, border->deviation) +
+                 (border->finding.isFound() ? "" : ", uncertain: " + border->finding.reason),
+             colour);
+}
+
 }  // namespace
 
 cv::Mat drawOverlay(const Frame& frame, const OverlayContent& content) {
@@ -122,6 +137,8 @@ cv::Mat drawOverlay(const Frame& frame, const OverlayContent& content) {
   if (content.cell != nullptr) drawCell(image, *content.cell, legend);
   if (content.holding != nullptr) drawPipette(image, *content.holding, "holding pipette", kHolding, legend);
   if (content.injection != nullptr) drawPipette(image, *content.injection, "injection pipette", kNeedle, legend);
+  drawBore(image, content.tongue, content.holding, "tongue", kHolding, legend);
+  drawBore(image, content.column, content.injection, "in the needle", kNeedle, legend);
   if (content.indentation != nullptr && content.indentation->finding.hasValues()) {
     for (std::size_t i = 1; i < content.indentation->contour.size(); ++i) {
       const cv::Point2d &a = content.indentation->contour[i - 1], &b = content.indentation->contour[i];

@@ -4,6 +4,7 @@
 
 #include "vision/dimple/indentation_contour.h"
 #include "vision/layers/cell_detector.h"
+#include "vision/pipette/bore_border.h"
 #include "vision/pipette/pipette_detector.h"
 
 namespace microinjection {
@@ -14,6 +15,7 @@ struct OverlayContent {
   const PipetteDetection* holding = nullptr;
   const PipetteDetection* injection = nullptr;
   const Dimple* indentation = nullptr;
+  const BoreBorder *column = nullptr, *tongue = nullptr;  ///< in the injection and in the holding pipette
 };
 
 /// Draws what was found on the frame with thin lines, values in px, and the verdicts with their

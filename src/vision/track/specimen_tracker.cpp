@@ -4,6 +4,7 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
+#include "vision/track/bore_measurement.h"
 #include "vision/track/frame_search.h"
 #include "vision/track/view_scale.h"
 
@@ -162,6 +163,7 @@ SpecimenView SpecimenTracker::lookAt(const Frame& frame, const Frame& enlarged) 
     view.cell.markAmbiguous();
   }
   measureIndentation(frame, view);
+  measureBores(frame, config_.cell.contrast_mode, view);
   return view;
 }
 

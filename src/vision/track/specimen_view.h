@@ -3,7 +3,9 @@
 #include "base/config_reader.h"
 #include "vision/dimple/indentation_contour.h"
 #include "vision/layers/cell_detector.h"
+#include "vision/pipette/bore_border.h"
 #include "vision/pipette/pipette_detector.h"
+#include "vision/track/cell_hold.h"
 #include "vision/track/overlay.h"
 
 namespace microinjection {
@@ -22,8 +24,10 @@ struct SpecimenView {
   CellDetection cell;
   PipetteDetection injection, holding;
   Dimple indentation;
+  BoreBorder column, tongue;  ///< in the injection and in the holding pipette
+  CellHold hold;
 
-  OverlayContent overlay() const { return {&cell, &holding, &injection, &indentation}; }
+  OverlayContent overlay() const { return {&cell, &holding, &injection, &indentation, &column, &tongue}; }
 };
 
 }  // namespace microinjection

@@ -44,6 +44,15 @@ class Scale {
     covariance(pipette.covariance);
     length(pipette.half_width);
   }
+  void bore(BoreBorder& border) const {
+    length(border.length);
+    length(border.deviation);
+    place(border.place);
+  }
+  void hold(CellHold& hold) const {
+    length(hold.gap);
+    length(hold.deviation);
+  }
   void dimple(Dimple& dimple) const {
     for (double* value : {&dimple.depth, &dimple.deviation, &dimple.displacement.depth, &dimple.displacement.deviation,
                           &dimple.displacement.gap})
@@ -66,6 +75,9 @@ SpecimenView scaled(SpecimenView view, double factor) {
   scale.pipette(view.injection);
   scale.pipette(view.holding);
   scale.dimple(view.indentation);
+  scale.bore(view.column);
+  scale.bore(view.tongue);
+  scale.hold(view.hold);
   return view;
 }
 
