@@ -16,6 +16,7 @@ One table, a row a case; a study is what its cases ask:
                  soon the suction ends, and how much was drawn in too much; by force, by images of the interface and by both
   families       random cells that no family has solved: tongues and surfaces of the family and solved, and the needle's force
                  on held cells as it is served and solved
+  hard           cells at the limits of the model: a tongue or a reason
 """
 import argparse
 import csv
@@ -179,7 +180,8 @@ def joined(count, noise, seed):
             continue
         tongue = identify_tongue(pressures, drawn['tongue_length'] + random.uniform(-2e-6, 2e-6) + random.normal(0, noise, 6), told)
         height = numpy.concatenate([numpy.linspace(-8e-6, 0, 800), numpy.linspace(0, depths[good][-1], 800)])
-        force = numpy.interp(height, numpy.concatenate([[-1, 0], depths[good]]), numpy.concatenate([[0, 0], solved['force'][good, 2]]))
+        # The force grows nearly as depth^(3/2), so its power of 2/3 is what lines join well.
+        force = numpy.interp(height, numpy.concatenate([[-1, 0], depths[good]]), numpy.concatenate([[0, 0], solved['force'][good, 2]**(2 / 3)]))**1.5
         try:
             curve = identify_held(height, force + random.normal(0, 10e-9, len(height)), told)
         except ConfigError as error:
@@ -280,6 +282,27 @@ def family_forces(count, seed):
                    1e6 * force * solved['error_estimate'][i], 'uN', took)
 
 
+def hard():
+    """Cells at the limits of the model: each has a tongue, in the bore's radii, or a reason."""
+    cell = held_scene(40, 8, 24, 2, 0.49)
+    material = {'model': 'neo_hookean', 'poisson_ratio': 0.49}
+    stiff = Scene({**cell.to_dict(), 'cell': {'layers': [
+        {'name': 'zona', 'outer_radius': 40e-6, 'material': {**material, 'young_modulus': 40 * MODULUS}},
+        {'name': 'inside', 'outer_radius': 34e-6, 'material': {**material, 'young_modulus': MODULUS}}]}})
+    for name, scene, suctions in (('zona 40 times as stiff as the inside', stiff, (0.1, 1, 4)),
+                                  ('tongue of three bore radii and more', cell, (0.2, 0.3, 0.4, 3)),
+                                  ('bore of 0.8 radii of the cell', held_scene(40, 32, 60, 4, 0.49), (0.02, 0.1, 0.3))):
+        begin = time.perf_counter()
+        drawn = aspirate(scene, -MODULUS * numpy.array(suctions), tolerance=0.05, finest=1)
+        took = (time.perf_counter() - begin) / len(suctions)
+        bore = scene.to_dict()['holding_pipette']['mouth']['inner_radius']
+        for i, suction in enumerate(suctions):
+            length = drawn['tongue_length'][i] / bore if drawn['converged'][i] else numpy.nan
+            if not drawn['converged'][i]:
+                print(f'suction: hard: {name}, p/E = {suction:g}: {drawn["reason"][i]}')
+            yield 'hard', f'{name}, p/E = {suction:g}', length, length * drawn['error_estimate'][i], numpy.nan, numpy.nan, 'bore radii', took
+
+
 def families(count, seed):
     yield from family_tongues('homogeneous', count, seed)
     yield from family_forces(count, seed)
@@ -297,7 +320,7 @@ def summary(study, rows):
     own, error, other, other_error = (numpy.array([row[k] for row in rows], dtype=float) for k in (2, 3, 4, 5))
     good = numpy.isfinite(own) & numpy.isfinite(other)
     if not good.any():
-        return f'{study}: nothing to compare with'
+        return f'{study}: {numpy.isfinite(own).sum()} of {len(rows)} cases solved; nothing to compare with'
     apart = numpy.abs(own / other - 1)[good]
     text = f'{study}: {good.sum()} of {len(rows)} cases, apart by {100 * statistics.median(apart):.2g} % (median), {100 * apart.max():.2g} % (worst)'
     within = numpy.abs(own - other)[good] <= (error + other_error)[good]
@@ -305,7 +328,7 @@ def summary(study, rows):
 
 
 def parse_arguments():
-    studies = 'half-space,second solver,needle,modulus,joined,breaks,families'
+    studies = 'half-space,second solver,needle,modulus,joined,breaks,families,hard'
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('--out', type=Path, required=True, help='folder of suction.csv')
     parser.add_argument('--studies', default=studies, help='default %(default)s')
@@ -327,7 +350,8 @@ def main():
                'modulus': lambda: modulus(arguments.cells, arguments.noise, arguments.seed),
                'joined': lambda: joined(arguments.cells, arguments.noise, arguments.seed),
                'breaks': lambda: breaks(arguments.trials),
-               'families': lambda: families(arguments.cells, arguments.seed)}
+               'families': lambda: families(arguments.cells, arguments.seed),
+               'hard': hard}
     lines = []
     with (arguments.out / 'suction.csv').open('w', encoding='utf-8', newline='') as file:
         table = csv.writer(file)
