@@ -1,4 +1,5 @@
-// Motion of a cell as a whole: Stokes, rest, hold limits, rolling, energy, order, time of a step; a pick-up's course.
+// Motion of a cell as a whole: Stokes, rest, hold limits, rolling, energy, hard cases, order, time of a step; a
+// pick-up's course.
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +11,7 @@
 #include "benchmark/bench_main.h"
 #include "benchmark/common/call_times.h"
 #include "benchmark/common/printed_table.h"
+#include "benchmark/common/suction_hold.h"
 #include "cell/pose/cell_motion.h"
 
 namespace microinjection {
@@ -18,14 +20,14 @@ namespace {
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-constexpr double kStep = 1e-3, kTip = 3e-6;  // s, m
+constexpr double kStep = 1e-3;  // s
 
 /// Rows of quantity, its condition, value, what it should be, and unit.
 class Rows {
  public:
   Rows() { table_.add("quantity,at,value,expected,unit\n"); }
   void add(const std::string& quantity, double at, double value, double expected, const std::string& unit) {
-    char row[160];
+    char row[200];
     std::snprintf(row, sizeof row, "%s,%.6g,%.6g,%.6g,%s\n", quantity.c_str(), at, value, expected, unit.c_str());
     table_.add(row);
   }
@@ -34,27 +36,6 @@ class Rows {
  private:
   PrintedTable table_;
 };
-
-PipetteMouth mouth() { return PipetteMouth(10e-6, 40e-6, 5e-6, 1); }
-
-ToolPose along(const Vector3d& axis, const Vector3d& position) {
-  return {position, Quaterniond::FromTwoVectors(Vector3d::UnitZ(), axis)};
-}
-
-CellMotionConfig withoutDish() {
-  CellMotionConfig config;
-  config.dish_height = -1;
-  return config;
-}
-
-CellMotion placed(const CellMotionConfig& config, CellMotionInput& input, double pressure, double gap = 0) {
-  CellMotion motion(config, mouth(), RoundedTip(kTip, kTip));
-  input.mouth.orientation = along(-Vector3d::UnitX(), Vector3d::Zero()).orientation;
-  input.pressure = pressure;
-  motion.place(input.mouth.position + Vector3d(mouth().touchDistance(config.radius) + gap, 0, 0),
-               Quaterniond::Identity(), input);
-  return motion;
-}
 
 void run(CellMotion& motion, const CellMotionInput& input, int count) {
   for (int i = 0; i < count; ++i) motion.step(kStep, input);
@@ -109,9 +90,10 @@ void addHoldLimits(Rows& rows) {
     config.density_difference = 0;
     config.friction.lip = 0;
     CellMotionInput input;
-    CellMotion motion = placed(config, input, -500);
+    CellMotion motion = placedBeforeMouth(config, input, -500);
     run(motion, input, 50);
-    const HoldLimits limits = motion.limits(-500);
+    const double seal = heldMouth().touchRadius(config.radius);
+    const HoldLimits limits(500 * M_PI * seal * seal, seal, config.radius, 0);  // of a rigid sphere
     double opens = 0;
     rows.add("pull_off", modulus, comesOff(motion, input, Vector3d::UnitX(), limits.suction(), nullptr),
              limits.suction(), "N");
@@ -128,16 +110,17 @@ void addSlip(Rows& rows, double beside) {
   config.friction.lip = 0.05;
   config.friction.needle = 2;
   CellMotionInput input;
-  CellMotion motion = placed(config, input, -2000);
+  CellMotion motion = placedBeforeMouth(config, input, -2000);
   run(motion, input, 50);
-  const double reach = config.radius + kTip, from = std::sqrt(reach * reach - beside * beside) - kTip, speed = 2e-6;
+  const double reach = config.radius + kHeldTip, from = std::sqrt(reach * reach - beside * beside) - kHeldTip,
+               speed = 2e-6;
   input.needle = along(Vector3d::UnitX(), motion.state().position + Vector3d(from, beside, 0));
   for (int i = 0; i < 20000 && !(motion.state().lip.slips && motion.state().lip.sliding > speed / 2); ++i) {
     input.needle->position.x() -= kStep * speed;
     motion.step(kStep, input);
   }
   const Vector3d force = motion.state().needle.force;
-  const Vector3d out = (input.needle->position + kTip * Vector3d::UnitX() - motion.state().position).normalized();
+  const Vector3d out = (input.needle->position + kHeldTip * Vector3d::UnitX() - motion.state().position).normalized();
   const Quaterniond own = input.mouth.orientation.conjugate();
   rows.add("needle_slip", beside, force.norm(), motion.limits(-2000).largest(own * (config.radius * out), own * force),
            "N");
@@ -149,8 +132,8 @@ void addRolling(Rows& rows) {
   config.friction.needle = 0.3;
   CellMotionInput input;
   const double travel = 6e-6, speed = 5e-6;
-  input.needle = along(Vector3d::UnitY(), {-travel / 4, -500e-6, 2 * config.radius + kTip});
-  CellMotion motion(config, {}, RoundedTip(kTip, kTip));
+  input.needle = along(Vector3d::UnitY(), {-travel / 4, -500e-6, 2 * config.radius + kHeldTip});
+  CellMotion motion(config, {}, RoundedTip(kHeldTip, kHeldTip));
   motion.place({0, 0, config.radius}, Quaterniond::Identity(), input);
   input.needle->position.z() -= 0.5e-6;
   run(motion, input, 50);
@@ -171,7 +154,7 @@ void addEnergy(Rows& rows) {
   const auto drawn = [&] { return Vector3d(normal(random), normal(random), normal(random)); };
   CellMotionInput input;
   input.mouth.position = {0, 0, 60e-6};
-  CellMotion motion = placed({}, input, -500);
+  CellMotion motion = placedBeforeMouth({}, input, -500);
   double largest = -1, work = 0;
   const int count = 20000;
   for (int i = 0; i < count; ++i) {
@@ -190,11 +173,82 @@ void addEnergy(Rows& rows) {
   rows.add("mean_work_of_step", count, work / count, NAN, "J");
 }
 
+/// What becomes of a cell in a hard case, and the largest excess of a step's energy (as in addEnergy; nan: a number was
+/// not finite).
+template <typename Drive>
+void addHardCase(Rows& rows, const std::string& what, CellMotion motion, CellMotionInput input, double seconds,
+                 const Drive& drive) {
+  double largest = -1, leak = 0;
+  int slipping = 0;
+  for (int i = 1; i * kStep <= seconds; ++i) {
+    drive(i * kStep, input);
+    const CellMotionState& state = motion.step(kStep, input);
+    const double excess = state.energy.rise + state.energy.viscous / 2 + state.energy.friction;
+    const bool finite = std::isfinite(excess) && state.position.allFinite() && state.velocity.allFinite();
+    largest = finite && !state.refusal ? std::max(largest, excess) : NAN;
+    if (!(largest > -INFINITY)) break;
+    leak = std::max(leak, state.leak);
+    slipping += state.mode == CellMode::kSlipping ? 1 : 0;
+  }
+  std::string outcome = name(motion.state().mode);
+  if (motion.state().sealed) outcome += " sealed";
+  if (slipping > 0) outcome += " after slipping for " + std::to_string(slipping) + " ms";
+  rows.add("hard " + what + ": " + outcome, seconds, largest, 0, "J");
+  rows.add("hard " + what + ": largest leak", seconds, leak, NAN, "m^3/s");
+}
+
+void addHardCases(Rows& rows) {
+  const auto still = [](double, CellMotionInput&) {};
+  CellMotionInput input;
+  CellMotionConfig config = withoutDish();
+  {
+    const PipetteMouth wide(60e-6, 80e-6, 5e-6, 1);
+    input.mouth.orientation = along(-Vector3d::UnitX(), Vector3d::Zero()).orientation;
+    input.pressure = -50;
+    CellMotion motion(config, wide, {});
+    motion.place({30e-6, 5e-6, 0}, Quaterniond::Identity(), input);
+    addHardCase(rows, "mouth wider than the cell", motion, input, 2, still);
+  }
+  for (const double area : {5e-12, 50e-12, 500e-12}) {
+    CellMotionInput leaking;
+    leaking.notch_area = area;
+    const std::string size = std::to_string(std::lround(1e12 * area));
+    const CellMotion motion = placedBeforeMouth(config, leaking, -500, 1e-6);
+    addHardCase(rows, "lip with a notch of " + size + " um2", motion, leaking, 2, still);
+  }
+  const auto square = [](double time, CellMotionInput& at) {
+    at.pressure = std::fmod(20 * time, 1) < 0.5 ? -2000 : 2000;
+  };
+  addHardCase(rows, "pressure reversed at 20 Hz, 2 kPa", placedBeforeMouth(config, input, -2000), input, 3, square);
+  const auto steps = [](double time, CellMotionInput& at) {
+    at.pressure = std::fmod(20 * time, 1) < 0.5 ? -2000 : -20;
+  };
+  addHardCase(rows, "pressure in steps at 20 Hz, 2 kPa and 20 Pa", placedBeforeMouth(config, input, -2000), input, 3,
+              steps);
+  for (const double beside : {0.25, 0.5, 0.75, 1.0}) {
+    CellMotion motion = placedBeforeMouth(config, input, -500);
+    const Vector3d on_lip(heldMouth().touchDistance(config.radius), beside * config.radius, 0);
+    motion.place(on_lip, Quaterniond::Identity(), input);
+    char what[60];
+    std::snprintf(what, sizeof what, "cell on the lip, %.2g radii beside its axis", beside);
+    addHardCase(rows, what, motion, input, 5, still);
+  }
+  config.friction.lip = 0.05;
+  config.friction.needle = 2;
+  CellMotion pushed = placedBeforeMouth(config, input, -2000);
+  run(pushed, input, 50);
+  const Vector3d touch = pushed.state().position + Vector3d(config.radius, 0, 0);
+  const auto into = [&](double time, CellMotionInput& at) {
+    at.needle = along(Vector3d::UnitX(), touch + Vector3d(-10e-6 * time, 25e-6, 0));
+  };
+  addHardCase(rows, "needle 25 um beside the axis, 30 um on", pushed, input, 3, into);
+}
+
 Vector3d afterSteps(int count) {
   CellMotionConfig config;
   CellMotionInput input;
   input.needle = along(Vector3d::UnitZ(), {5e-6, 0, 95e-6});
-  CellMotion motion(config, {}, RoundedTip(kTip, kTip));
+  CellMotion motion(config, {}, RoundedTip(kHeldTip, kHeldTip));
   motion.place({0, 0, 50e-6}, Quaterniond::Identity(), input);
   for (int i = 1; i <= count; ++i) {
     input.needle->position.z() = 95e-6 - 30e-6 * std::pow(static_cast<double>(i) / count, 2);
@@ -222,7 +276,7 @@ void addTimes(Rows& rows) {
   add("time_free", callTimes([&](int) { free.step(kStep, input); }, 10, 2000, 10));
   const Vector3d start(0, 0, 60e-6);
   input.mouth.position = start;
-  CellMotion held = placed(config, input, -500);
+  CellMotion held = placedBeforeMouth(config, input, -500);
   add("time_held_and_moved", callTimes(
                                  [&](int i) {
                                    input.mouth.position.y() = 20e-6 * std::sin(0.01 * i);
@@ -230,7 +284,7 @@ void addTimes(Rows& rows) {
                                  },
                                  1, 5000, 20));
   input.mouth.position = start;
-  CellMotion pushed = placed(config, input, -500);
+  CellMotion pushed = placedBeforeMouth(config, input, -500);
   run(pushed, input, 50);
   const Vector3d touch = pushed.state().position + Vector3d(config.radius, 3e-6, 0);
   const auto pushing = [&](double depth, double rate) {
@@ -248,7 +302,7 @@ void addCourse(Rows& rows) {
   const CellMotionConfig config;
   CellMotionInput input;
   input.mouth.position = {0, 0, config.radius};
-  CellMotion motion = placed(config, input, 0, 2e-6);
+  CellMotion motion = placedBeforeMouth(config, input, 0, 2e-6);
   for (int i = 0; i < 4000; ++i) {
     const double time = kStep * i;
     if (i == 200) input.pressure = -500;
@@ -271,6 +325,7 @@ std::string table() {
   for (const double beside : {10e-6, 15e-6, 20e-6, 25e-6}) addSlip(rows, beside);
   addRolling(rows);
   addEnergy(rows);
+  addHardCases(rows);
   addOrder(rows);
   addTimes(rows);
   addCourse(rows);

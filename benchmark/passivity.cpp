@@ -1,4 +1,5 @@
-// Energy and limit cycles at the hand: impedance, stiffness, delay, loss, chatter.
+// Energy and limit cycles at the hand: impedance, stiffness, delay, loss, chatter, cells that are held, slide or are
+// loose.
 
 #include <cmath>
 #include <cstdio>
@@ -9,6 +10,7 @@
 
 #include "benchmark/bench_main.h"
 #include "benchmark/common/teleoperation_loop.h"
+#include "benchmark/common/touched_cell.h"
 
 namespace microinjection {
 namespace {
@@ -48,7 +50,7 @@ struct Summary {
 
 class Table {
  public:
-  explicit Table(int draws) : draws_(draws) {}
+  Table(int draws, const std::string& blocks) : draws_(draws), blocks_(blocks) {}
 
   std::string make() {
     emit(
@@ -59,17 +61,22 @@ class Table {
         "needle_force_N,"
         "peak_force_N,peak_force_rate_N_per_s,needle_overshoot_um,needle_drift_um\n");
     for (const Controller controller : kControllers) {
+      if (!asked("grid")) break;
       for (const double damping : {0.0, 5.0, 15.0, 50.0}) {
         for (const double stiffness : {20.0, 60.0, 200.0, 600.0, 2000.0, 4000.0})
           conditions(controller, damping, stiffness);
       }
     }
-    for (int i = 0; i < draws_; ++i) {
+    for (int i = 0; asked("drawn") && i < draws_; ++i) {
       for (const Controller controller : kControllers) {
         TeleoperationLoop loop = drawn(i);
         loop.controller = controller;
         add("drawn", loop);
       }
+    }
+    for (const TouchedCell cell : kTouchedCells) {
+      if (!asked(name(cell))) continue;
+      for (const Controller controller : kControllers) cells(cell, controller);
     }
     for (const auto& [controller, sum] : summaries_) {
       std::fprintf(stderr,
@@ -80,6 +87,8 @@ class Table {
   }
 
  private:
+  bool asked(const std::string& block) const { return blocks_.find(block) != std::string::npos; }
+
   /// Between the grid's values, and with a network of its own.
   static TeleoperationLoop drawn(int number) {
     std::mt19937 random(1000 + number);
@@ -117,6 +126,25 @@ class Table {
     }
   }
 
+  /// A cell under a hand, damped and not, with and without a network.
+  void cells(TouchedCell cell, Controller controller) {
+    TeleoperationLoop loop;
+    loop.controller = controller;
+    for (const double damping : {0.0, 15.0}) {
+      for (const double stiffness : {60.0, 600.0, 4000.0}) {
+        for (const double delay : {0.0, 0.02, 0.1, 0.2}) {
+          loop.hand.damping = damping;
+          loop.stiffness = stiffness;
+          loop.link.delay = delay;
+          loop.link.jitter = delay / 2;
+          loop.link.loss = delay > 0 ? 0.2 : 0;
+          loop.makeTouched = [=] { return makeTouchedCell(cell, stiffness, TeleoperationLoop::kPressedForce); };
+          add(name(cell), loop);
+        }
+      }
+    }
+  }
+
   void add(const std::string& block, const TeleoperationLoop& loop) {
     const Result r = loop.run();
     summaries_[block + ' ' + name(loop.controller)].add(loop, r);
@@ -139,6 +167,7 @@ class Table {
   }
 
   int draws_;
+  std::string blocks_;
   std::string rows_;
   std::map<std::string, Summary> summaries_;
 };
@@ -148,10 +177,12 @@ class Table {
 
 int main(int argc, char** argv) {
   int draws = 150;
+  std::string blocks = "grid,drawn,held,sliding,loose";
   boost::program_options::options_description more;
   more.add_options()("draws", boost::program_options::value(&draws)->default_value(draws),
-                     "cases between the grid's, each with a network of its own");
+                     "cases between the grid's, each with a network of its own")(
+      "blocks", boost::program_options::value(&blocks)->default_value(blocks), "of cases");
   return microinjection::benchMain(
       argc, argv, "passivity: energy and limit cycles of the hand's port, controllers off and on",
-      [&] { return microinjection::Table(draws).make(); }, more);
+      [&] { return microinjection::Table(draws, blocks).make(); }, more);
 }

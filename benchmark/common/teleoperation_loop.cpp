@@ -11,13 +11,12 @@
 namespace microinjection {
 namespace {
 
-constexpr double kPeriod = 1e-3;       // s, of bridge and rig
-constexpr int kSubsteps = 20;          // of the hand within it: the device's force is held, the hand is not
-constexpr int kFound = 1000;           // periods before the start, with a link that has epochs
-constexpr double kTimeout = 0.3;       // s without a value: the needle holds, the hand feels nothing
-constexpr double kServoTime = 2e-3;    // s, by which the needle lags behind its target
-constexpr double kPressedForce = 1.2;  // N that the hand means to press with
-constexpr double kFree = 5e-3;         // m above what is touched
+constexpr double kPeriod = 1e-3;     // s, of bridge and rig
+constexpr int kSubsteps = 20;        // of the hand within it: the device's force is held, the hand is not
+constexpr int kFound = 1000;         // periods before the start, with a link that has epochs
+constexpr double kTimeout = 0.3;     // s without a value: the needle holds, the hand feels nothing
+constexpr double kServoTime = 2e-3;  // s, by which the needle lags behind its target
+constexpr double kFree = 5e-3;       // m above what is touched
 constexpr double kInEnd = 1.0, kHalfOut = 6.0, kHalfOutEnd = 6.2, kOut = 10.0, kOutEnd = 10.5, kEnd = 11.0;  // s
 constexpr double kChatterStart = 1.5, kChatterEnd = 2.0, kChatterPeriod = 0.08;                              // s
 
@@ -80,7 +79,8 @@ class Simulation {
         forward_(loop.link),
         back_(otherSeed(loop.link)),
         needle_(kFree) {
-    deep_ = kPressedForce / loop.stiffness + kPressedForce / loop.hand.stiffness;
+    if (loop.makeTouched) touched_ = loop.makeTouched();
+    deep_ = TeleoperationLoop::kPressedForce * (1 / loop.stiffness + 1 / loop.hand.stiffness);
   }
 
   TeleoperationLoop::Result run() {
@@ -96,7 +96,7 @@ class Simulation {
     }
     for (int i = 0; i < 1000; ++i) {
       result_.contact_force += samples[5000 + i].force / 1000;
-      result_.needle_force += loop_.stiffness * std::max(0.0, -samples[5000 + i].needle) / 1000;
+      result_.needle_force += samples[5000 + i].touched / 1000;
     }
     const auto hand = [](const auto& a, const auto& b) { return a.hand < b.hand; };
     const auto needle = [](const auto& a, const auto& b) { return a.needle < b.needle; };
@@ -125,7 +125,7 @@ class Simulation {
     moveHand(now, force);
     const double moved = hand_.position().z();
     stepRig(now);
-    result_.samples.push_back({now, moved, needle_, force, bridge_.observedEnergy()});
+    result_.samples.push_back({now, moved, needle_, force, touch_, bridge_.observedEnergy()});
     result_.observed_energy_min = std::min(result_.observed_energy_min, bridge_.observedEnergy());
     result_.true_energy_min = std::min(result_.true_energy_min, true_energy_);
     if (wave()) result_.margin_min = std::min({result_.margin_min, wave_leader_.margin(), wave_follower_.margin()});
@@ -176,7 +176,8 @@ class Simulation {
   void stepRig(double now) {
     for (const LinkPacket& packet : wave_forward_.receive(now)) wave_follower_.receive(packet);
     for (const Packet& packet : forward_.receive(now)) goal_inbox_.receive(packet);
-    const Eigen::Vector3d force(0, 0, touch(now));
+    touch_ = touch(now);
+    const Eigen::Vector3d force(0, 0, touch_);
     const double scale = loop_.bridge.motion.position_scale;
     std::optional<Eigen::Vector3d> goal;
     if (wave()) {
@@ -192,13 +193,15 @@ class Simulation {
   }
 
   /// N at the hand's scale, of what is touched on the needle.
-  double touch(double now) const {
+  double touch(double now) {
+    if (touched_) return touched_(needle_);
     const bool gone = loop_.chatter && now >= kChatterStart && now < kChatterEnd &&
                       std::fmod(now - kChatterStart, kChatterPeriod) < kChatterPeriod / 2;
     return gone ? 0 : loop_.stiffness * std::max(0.0, -needle_);
   }
 
   const TeleoperationLoop& loop_;
+  TeleoperationLoop::Touched touched_;
   VirtualHand hand_;
   HapticBridge bridge_;
   Inbox force_inbox_, goal_inbox_;
@@ -211,6 +214,7 @@ class Simulation {
   double deep_ = 0;         ///< m, below the surface, where the hand means to be
   double hand_speed_ = 0;   ///< m/s
   double true_energy_ = 0;  ///< J
+  double touch_ = 0;        ///< N, of what is touched
   double last_force_ = 0;   ///< N
   TeleoperationLoop::Result result_;
 };

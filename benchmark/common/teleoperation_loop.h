@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -15,12 +16,17 @@ namespace microinjection {
 /// motion along one axis.
 struct TeleoperationLoop {
   enum class Controller { kOff, kObserver, kWave };
+  static constexpr double kPressedForce = 1.2;  ///< N that the hand means to press with
 
   VirtualHandConfig hand;
   double device_damping = 0.2;      ///< N s/m, of the device itself
   double device_resolution = 2e-5;  ///< m, of the device's encoders
   double stiffness = 60;            ///< N/m at the hand, of what is touched; nothing damps it
   LinkConditions link;              ///< either way
+  /// N on the needle at the hand's scale, of what it touches, by its place (m, at that scale) in each period. One for
+  /// each run; none: a spring of that stiffness.
+  using Touched = std::function<double(double)>;
+  std::function<Touched()> makeTouched;
   bool chatter = false;  ///< the force drops to zero and returns, again and again, as a membrane that gives way
   Controller controller = Controller::kObserver;
   HapticBridgeConfig bridge;
@@ -31,6 +37,7 @@ struct TeleoperationLoop {
     double hand;             ///< m
     double needle;           ///< m, at the hand's scale
     double force;            ///< N, on the hand
+    double touched;          ///< N, on the needle, at the hand's scale
     double observed_energy;  ///< J, by the bridge
   };
   struct Result {

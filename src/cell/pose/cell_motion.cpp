@@ -79,9 +79,10 @@ CellMotion::CellMotion(const CellMotionConfig& config, const std::optional<Pipet
 
 HoldLimits CellMotion::limits(double pressure, double notch_area) const {
   if (!mouth_ || suction_->swallows()) return HoldLimits(0, 0, config_.radius, 0);
-  const double share = suction_->share(0, suction_->notchConductance(notch_area));
-  return HoldLimits(std::max(-pressure, 0.0) * suction_->area() * share, suction_->sealRadius(), config_.radius,
-                    config_.friction.lip);
+  const double closed = suction_->share(0, suction_->notchConductance(notch_area));
+  const double suction = closed * std::max(-pressure, 0.0);
+  return HoldLimits(suction * suction_->area(), suction_->sealRadius(), config_.radius, config_.friction.lip,
+                    suction_->releasedRadius(suction));
 }
 
 const char* CellMotion::refusal(const CellMotionInput& input) const {

@@ -18,14 +18,22 @@ namespace microinjection {
 /// E(sin(alpha)) / pi, E the complete elliptic integral of the second kind. So friction bears the moment mu N R 2 E /
 /// pi, and mu N s about the tube.
 ///
+/// A soft cell bulges into the bore, so that it leaves the lip at a circle nearer to the bore, of the radius r < s
+/// (LipSuction::releasedRadius). Pulling off and tipping are about that circle: s becomes r in their limits, and F
+/// becomes p pi r^2. It turns while it is pressed, about the circle s. `./dev bench slip` compares with solved cells.
+///
 /// Each limit is exact when the others are far; friction that already bears a moment in one direction bears less in
 /// another.
 class HoldLimits {
  public:
-  /// @param suction N, F >= 0. @param seal_radius m, s, below @param radius m, the sphere's. @param friction mu
+  /// A rigid sphere. @param suction N, F >= 0. @param seal_radius m, s, below @param radius m, the sphere's. @param
+  /// friction mu
   HoldLimits(double suction, double seal_radius, double radius, double friction);
+  /// A soft one. @param released_radius m, r, above 0 and at most s
+  HoldLimits(double suction, double seal_radius, double radius, double friction, double released_radius);
 
-  double suction() const { return suction_; }  ///< N, the largest pull along the tube
+  double suction() const { return suction_; }  ///< N, F
+  double pull() const;                         ///< N, along the tube: the cell comes off
   double opening() const;                      ///< N, across the tube through the centre: the seal opens on one side
   double sideways() const;                     ///< N, so that the cell comes off over the lip
   double turning() const;                      ///< N m, about an axis across the tube: the cell turns in its seat
@@ -40,7 +48,7 @@ class HoldLimits {
   double largest(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) const;
 
  private:
-  double suction_, seal_, radius_, friction_, cosine_;
+  double suction_, seal_, radius_, friction_, released_;
 };
 
 }  // namespace microinjection

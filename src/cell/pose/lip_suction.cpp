@@ -1,11 +1,15 @@
 #include "cell/pose/lip_suction.h"
 
 #include <algorithm>
+#include <boost/math/special_functions/ellint_1.hpp>
+#include <boost/math/special_functions/ellint_2.hpp>
 #include <cmath>
 #include <complex>
 
 namespace microinjection {
 namespace {
+
+constexpr double kLeaves = 0.17;  // of the lip's edge radius, beyond the liquid's disc: where the slope is taken
 
 double filmShare(double t) { return 1 / (1 + t * t * std::sqrt(t)); }
 
@@ -23,7 +27,12 @@ double reciprocalIntegral(double t) {
 }  // namespace
 
 LipSuction::LipSuction(const PipetteMouth& mouth, const CellMotionConfig& config)
-    : swallows_(mouth.innerRadius() >= config.radius), viscosity_(config.viscosity), edge_(mouth.edgeRadius()) {
+    : swallows_(mouth.innerRadius() >= config.radius),
+      viscosity_(config.viscosity),
+      edge_(mouth.edgeRadius()),
+      crest_(mouth.crestRadius()),
+      radius_(config.radius),
+      modulus_(config.contactModulus()) {
   const double a = mouth.innerRadius(), relative = 1 / (1 / config.radius + 1 / edge_);
   seal_ = swallows_ ? config.radius : mouth.touchRadius(config.radius);
   // A sphere that passes the mouth is drawn to a place behind it.
@@ -35,6 +44,14 @@ LipSuction::LipSuction(const PipetteMouth& mouth, const CellMotionConfig& config
 }
 
 double LipSuction::area() const { return M_PI * seal_ * seal_; }
+
+double LipSuction::releasedRadius(double suction) const {
+  if (swallows_) return seal_;
+  const double k = seal_ / (seal_ + kLeaves * edge_);
+  const double slope = 4 / M_PI * suction / modulus_ * (boost::math::ellint_1(k) - boost::math::ellint_2(k));
+  const double angle = std::min(std::asin(seal_ / radius_) + slope, M_PI / 2);
+  return crest_ - edge_ * std::sin(angle);
+}
 
 double LipSuction::notchConductance(double area) const {
   if (area <= 0) return 0;

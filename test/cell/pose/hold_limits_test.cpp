@@ -57,6 +57,18 @@ TEST(HoldLimits, BesideTheAxisAForceAlongTheTubeTurnsTheCell) {
   EXPECT_NEAR(holdLimits(5).largest(point, {0, 0, 1}), kSuctionForce * kSealRadius / (beside - kSealRadius), 1e-18);
 }
 
+TEST(HoldLimits, ASoftCellComesOffAtTheCircleWhereItLeavesTheLip) {
+  const double released = 12e-6, share = released / kSealRadius, tangent = std::tan(std::asin(released / kHeldRadius));
+  const HoldLimits soft(kSuctionForce, kSealRadius, kHeldRadius, kLipFriction, released);
+  const double pull = kSuctionForce * share * share;
+  EXPECT_NEAR(soft.pull(), pull, 1e-20);
+  EXPECT_NEAR(soft.largest(Vector3d::Zero(), {0, 0, -1}), pull, 1e-20);
+  EXPECT_NEAR(soft.largest(Vector3d::Zero(), {1, 0, 0}), pull * tangent, 1e-20);
+  EXPECT_NEAR(soft.opening(), pull * tangent / 2, 1e-20);
+  EXPECT_EQ(soft.turning(), holdLimits().turning());
+  EXPECT_EQ(holdLimits().pull(), kSuctionForce);
+}
+
 TEST(HoldLimits, WithoutSuctionHoldsNothing) {
   EXPECT_EQ(HoldLimits(0, kSealRadius, kHeldRadius, 1).largest({0, 0, -kHeldRadius}, {1, 0, 0}), 0);
 }

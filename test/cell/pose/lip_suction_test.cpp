@@ -70,5 +70,27 @@ TEST(LipSuction, KnowsABoreThatIsTooWide) {
   EXPECT_TRUE(LipSuction(holdingMouth(50e-6), {}).swallows());
 }
 
+/// Against pulls of cells solved in their section (./dev bench slip, scenes A, B, G and H: two that fitted the law, two
+/// that did not).
+TEST(LipSuction, ReleasesASoftCellNearerToTheBoreThanItTouchesARigidOne) {
+  struct Solved {
+    double radius, inner, outer, edge, suction, pull;  // m, Pa, N
+  };
+  for (const Solved& solved :
+       {Solved{40e-6, 14e-6, 40e-6, 8e-6, 250, 253.1e-9}, Solved{40e-6, 14e-6, 40e-6, 8e-6, 750, 678.9e-9},
+        Solved{30e-6, 9e-6, 24e-6, 2e-6, 400, 126.6e-9}, Solved{60e-6, 20e-6, 50e-6, 6e-6, 600, 946.9e-9}}) {
+    CellMotionConfig config;
+    config.radius = solved.radius;
+    config.modulus = 5e3;
+    const PipetteMouth mouth(solved.inner, solved.outer, solved.edge, 1);
+    const LipSuction suction(mouth, config);
+    EXPECT_DOUBLE_EQ(suction.releasedRadius(0), suction.sealRadius());
+    const double pull = solved.suction * M_PI * std::pow(suction.releasedRadius(solved.suction), 2);
+    EXPECT_NEAR(pull / solved.pull, 1, 0.03);
+    EXPECT_DOUBLE_EQ(CellMotion(config, mouth, {}).limits(-solved.suction).pull(), pull);
+    EXPECT_DOUBLE_EQ(suction.releasedRadius(1e6), solved.inner);  // as steep as the bore's wall
+  }
+}
+
 }  // namespace
 }  // namespace microinjection
