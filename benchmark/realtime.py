@@ -33,6 +33,7 @@ PERIOD = 1e-3     # s
 ALLOWED = 1e-3    # share of late periods beyond the bare loop's
 SETTLE = 5        # s after the hand has begun, not counted
 RVIZ_TIMEOUT = 90  # s
+HELD = {'holder': 'sim', 'overrides.holder.balance': -2000}  # Pa
 
 
 def parse_arguments():
@@ -42,6 +43,7 @@ def parse_arguments():
     parser.add_argument('--cell', default='mouse_oocyte_pipette', help='name in config/cells (default %(default)s)')
     parser.add_argument('--model', default='surrogate', choices=('surrogate', 'live', 'auto'), help='default %(default)s')
     parser.add_argument('--console', default='', help="rviz with the operator's console, name in config/console")
+    parser.add_argument('--holder', action='store_true', help='the cell, one with a mouth, is held by suction')
     parser.add_argument('--rate', type=int, default=2, help='Hz, of the scene in rviz on a virtual display (default 2)')
     parser.add_argument('--freeze', action='store_true', help='rviz is stopped (SIGSTOP) while it is measured')
     parser.add_argument('--no-rviz', action='store_true', help='display node, but nobody who draws')
@@ -150,7 +152,7 @@ def run(arguments, folder):
     write_motion(motion, arguments.seconds + SETTLE + 30)
     session = DemoSession(ROOT / 'launch' / 'session.launch', logs, {
         'cell': arguments.cell, 'model': arguments.model, 'hand.motion': motion, 'record.folder': folder / 'record',
-        'record.bag': 'false'})
+        'record.bag': 'false', **(HELD if arguments.holder else {})})
     view = None
     try:
         session.wait_ready()

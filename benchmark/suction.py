@@ -17,6 +17,8 @@ One table, a row a case; a study is what its cases ask:
   families       random cells that no family has solved: tongues and surfaces of the family and solved, and the needle's force
                  on held cells as it is served and solved
   hard           cells at the limits of the model: a tongue or a reason
+  slip           ./dev bench slip: what a hold bears
+  motion         ./dev bench cell_motion: rest on the dish, energy, drag, hard cases
 """
 import argparse
 import csv
@@ -309,6 +311,12 @@ def families(count, seed):
     yield from family_tongues('zona', count, seed)
 
 
+def program(name):
+    """A benchmark of its own, which prints its own tables."""
+    subprocess.run([PEER.parents[2] / 'dev', 'bench', name], check=True)
+    return ()
+
+
 def summary(study, rows):
     """One line on the rows of a study."""
     if study.startswith('drawn'):
@@ -328,7 +336,7 @@ def summary(study, rows):
 
 
 def parse_arguments():
-    studies = 'half-space,second solver,needle,modulus,joined,breaks,families,hard'
+    studies = 'half-space,second solver,needle,modulus,joined,breaks,families,hard,slip,motion'
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('--out', type=Path, required=True, help='folder of suction.csv')
     parser.add_argument('--studies', default=studies, help='default %(default)s')
@@ -351,7 +359,7 @@ def main():
                'joined': lambda: joined(arguments.cells, arguments.noise, arguments.seed),
                'breaks': lambda: breaks(arguments.trials),
                'families': lambda: families(arguments.cells, arguments.seed),
-               'hard': hard}
+               'hard': hard, 'slip': lambda: program('slip'), 'motion': lambda: program('cell_motion')}
     lines = []
     with (arguments.out / 'suction.csv').open('w', encoding='utf-8', newline='') as file:
         table = csv.writer(file)

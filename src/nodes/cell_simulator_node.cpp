@@ -16,9 +16,11 @@ constexpr double kInjectorTimeout = 0.1;  ///< s, past which there is no suction
 
 const char* const CellSimulatorNode::kHelp =
     "cell_simulator: the finite-element cell under the needle.\n"
-    "In: /needle/measured_cp or /needle/true_cp, /cell/set_parameters, of a needle with a bore /injector/state. Out: "
-    "/cell/predicted_cf,\n"
-    "/cell/contact, /cell/state, of a needle with a bore /cell/bore.\n"
+    "In: /needle/measured_cp or /needle/true_cp, /cell/set_parameters, of a needle with a bore /injector/state, with a "
+    "holder\n"
+    "/holder/state and /holder_rig/measured_cp or true_cp. Out: /cell/predicted_cf, /cell/contact, /cell/state, of a "
+    "needle with a bore\n"
+    "/cell/bore, with a holder /cell/hold and /cell/seal.\n"
     "Service: ~set_cell_parameters.\n";
 
 CellSimulatorNode::Parameters CellSimulatorNode::Parameters::read(const Bus& bus) {
@@ -33,6 +35,7 @@ CellSimulatorNode::Parameters CellSimulatorNode::Parameters::read(const Bus& bus
   reader.number("needle_timeout", parameters.needle_timeout, Range::positive());
   parameters.models.live = LiveCellModelConfig::read(reader);
   parameters.models.explicit_dynamics = ExplicitCellModelConfig::read(reader);
+  parameters.holding = CellHolding::Config::read(reader);
   reader.finish();
   return parameters;
 }
@@ -56,6 +59,7 @@ CellSimulatorNode::CellSimulatorNode(Bus& bus)
         &cycle_.input<cell_microinjection::InjectorState>("injector/state", InputPhase::kSampled, kInjectorTimeout);
     bore_ = &cycle_.output<cell_microinjection::BoreState>("cell/bore");
   }
+  if (parameters_.holding.holder) makeHolding(scene);
   using Thread = CellStatePublisher::Thread;
   const auto thread = cycle_.bus().isVirtual() ? Thread::kOfTheStep : Thread::kOwn;
   state_publisher_ = std::make_unique<CellStatePublisher>(*cell_, scene, state_, parameters_.state_rate, thread);
@@ -75,13 +79,28 @@ ChosenCellModel CellSimulatorNode::makeCell(const Scene& scene) const {
   return served;
 }
 
+void CellSimulatorNode::makeHolding(const Scene& scene) {
+  const std::string refusal = CellHolding::refusal(scene);
+  if (refusal.empty()) {
+    holding_ = std::make_unique<CellHolding>(cycle_, scene, parameters_.holding, parameters_.models.families);
+  } else {
+    ROS_INFO_STREAM("the holder does not act on the cell: " << refusal);
+  }
+}
+
 void CellSimulatorNode::step(const Cycle::Tick& tick) {
   TipForce force{false, Eigen::Vector3d::Zero()};
   const auto* message = needle_.get(tick.now);
   const auto pose = validPose(message);
   if (bore_) readInjector(tick.now);
+  if (holding_) {
+    std::optional<Eigen::Isometry3d> needle = pose;
+    if (needle) needle->translation().z() -= cell_->height();  // which CellHold does not know
+    cell_->follow(holding_->step(tick, needle, cell_->insertion().inside));
+  }
   if (pose) {
     force = cell_->step(pose->translation(), pose->linear().col(2), tick.now.toSec());
+    if (holding_) force.force = holding_->forceOnNeedle(force.force);
     invalid_reason_ = cell_->invalidReason();
   } else {
     invalid_reason_ = "no valid needle pose";
@@ -95,6 +114,7 @@ void CellSimulatorNode::step(const Cycle::Tick& tick) {
   }
   publishContact(tick.now);
   if (bore_ && pose) publishBore(tick.now);
+  if (holding_) holding_->publish(tick.now);
   state_publisher_->step(moment(tick.now, force));
 }
 

@@ -13,6 +13,7 @@
 #include "cell_microinjection/CellContact.h"
 #include "cell_microinjection/CellState.h"
 #include "cell_microinjection/InjectorState.h"
+#include "nodes/cell/cell_holding.h"
 #include "nodes/cell/cell_parameter_server.h"
 #include "nodes/cell/cell_state_publisher.h"
 #include "nodes/runtime/cycle.h"
@@ -22,9 +23,10 @@ namespace microinjection {
 /// The cell under the needle, see makeCellModel. An invalid force has stamp 0.
 ///
 /// In:  /needle/measured_cp or /needle/true_cp (PoseStamped, tip in `world`); of a needle with a bore
-///      /injector/state (InjectorState, the pressure in it)
+///      /injector/state (InjectorState, the pressure in it); with a holder those of CellHolding
 /// Out: /cell/predicted_cf (WrenchStamped, of the cell on the tip, in `world`), /cell/contact (CellContact, on change
-///      and each 20 ms), /cell/state (CellState); of a needle with a bore /cell/bore (BoreState, 200 Hz)
+///      and each 20 ms), /cell/state (CellState); of a needle with a bore /cell/bore (BoreState, 200 Hz); with a
+///      holder those of CellHolding
 /// The cell's parameters change by CellParameterServer.
 ///
 /// Parameters: config/cell_simulator.yaml
@@ -43,10 +45,12 @@ class CellSimulatorNode {
     double state_rate = 60;
     double needle_timeout = 0.05;
     CellModelConfig models;
+    CellHolding::Config holding;
     static Parameters read(const Bus& bus);
   };
 
   ChosenCellModel makeCell(const Scene& scene) const;
+  void makeHolding(const Scene& scene);
   void step(const Cycle::Tick& tick);
   std::optional<CellModel::Solution> solution(const ros::Time& now) const;
   CellMoment moment(const ros::Time& now, const TipForce& force) const;
@@ -65,6 +69,7 @@ class CellSimulatorNode {
   Output<cell_microinjection::CellState>& state_;
   Input<cell_microinjection::InjectorState>* injector_ = nullptr;  ///< these two are of a needle with a bore
   Output<cell_microinjection::BoreState>* bore_ = nullptr;
+  std::unique_ptr<CellHolding> holding_;  ///< null: the cell is fixed to its pipette
   ros::Time bore_published_;
   double bore_volume_ = 0;  ///< m^3, then
   cell_microinjection::CellContact last_contact_;

@@ -194,6 +194,7 @@ void HolderNode::publish(const ros::Time& now) {
   cell_microinjection::HolderState message;
   message.header.stamp = now;
   message.pressure = reading.mouth;
+  message.line_pressure = reading.pipette;
   message.source_pressure = reading.source;
   message.target = target_;
   message.flow = reading.flow;

@@ -25,7 +25,9 @@ bool stopsOrWithdraws(const std::string& command) {
 }
 
 /// Commands that start a motion of the controller.
-bool moves(const std::string& command) { return command == "home" || command == "withdraw" || command == "approach"; }
+bool moves(const std::string& command) {
+  return command == "home" || command == "withdraw" || command == "approach" || command == "hold";
+}
 
 }  // namespace
 
@@ -36,9 +38,13 @@ const char* const InjectionControllerNode::kHelp =
     "/needle/interface, /needle/abilities, /needle/operating_state, /needle/loop_state, /cell/estimate, "
     "/controller/state_command "
     "(enable, disable, pause, resume, home, unhome, "
-    "approach, indent,\n"
-    "aspirate, inject, withdraw). Action: /controller/inject. Out: /needle/servo_cp /controller/operating_state\n"
-    "/controller/injection_state /injector/pulse /injector/stop.\n";
+    "hold, approach,\n"
+    "indent, aspirate, inject, withdraw, release), with a holder /holder/state /cell/hold /vision/state. Action: "
+    "/controller/inject.\n"
+    "Out: /needle/servo_cp /controller/operating_state /controller/injection_state /injector/pulse /injector/stop, "
+    "with "
+    "a holder\n"
+    "/holder/set_pressure.\n";
 
 InjectionControllerNode::Parameters InjectionControllerNode::Parameters::read(const Bus& bus) {
   Parameters parameters;
@@ -84,6 +90,7 @@ InjectionControllerNode::InjectionControllerNode(Bus& bus)
     target_ =
         &cycle_.input<geometry_msgs::PoseStamped>("teleop/servo_cp", InputPhase::kDrives, parameters_.input_timeout);
   }
+  if (parameters_.model.holder) holder_ = std::make_unique<HolderLink>(cycle_, parameters_.input_timeout);
   if (parameters_.injector) injector_ = std::make_unique<InjectorLink>(cycle_, parameters_.input_timeout);
   state_ = bus.advertise<cell_microinjection::OperatingState>("controller/operating_state", 10, true);
   subscribeCommands();
@@ -142,7 +149,8 @@ void InjectionControllerNode::execute(const std::string& command) {
   needle_.repeats.clear();
   ROS_INFO_STREAM("state command " << command << ": " << toText(model_.state()));
   if (ran && !model_.running()) log_.addOverride("the injection", "by " + command);
-  if (moves(command)) busy_.accept(static_cast<std::int64_t>(cycle_.bus().now().toNSec()));
+  if (moves(command) && (command != "hold" || model_.running()))
+    busy_.accept(static_cast<std::int64_t>(cycle_.bus().now().toNSec()));
 }
 
 void InjectionControllerNode::adaptTo(const cell_microinjection::ManipulatorAbilities& rig) {
@@ -213,6 +221,10 @@ void InjectionControllerNode::step(const Cycle::Tick& tick) {
   InjectionController::Input input;
   input.target = validPosition(target, kWorldFrame);
   if (injector_) input.injector = injector_->report(tick.now);
+  if (holder_) {
+    input.holder = holder_->report(tick.now);
+    input.cell_hold = holder_->cell(tick.now);
+  }
   const bool interface_is_new = interface_.takeUpdates() != nullptr;
   const auto* seen = interface_.get(tick.now);
   if (seen && std::isfinite(seen->position)) input.interface = InterfaceReading{seen->position, interface_is_new};
@@ -238,6 +250,7 @@ void InjectionControllerNode::step(const Cycle::Tick& tick) {
   const bool is_commanded = model_.state() == OperatingState::kEnabled && rig_follows;
   commanded_ = is_commanded ? setpoint : std::nullopt;
   if (injector_) injector_->setPulse(model_.pulse(), tick.now);
+  if (holder_) holder_->command(model_.holderCommand(), tick.now);
   action_.step(tick.now);
   logNotice();
   publishState(tick.now);

@@ -16,6 +16,7 @@
 #include "cell_microinjection/ManipulatorAbilities.h"
 #include "cell_microinjection/OperatingState.h"
 #include "cell_microinjection/StringStamped.h"
+#include "nodes/injection/holder_link.h"
 #include "nodes/injection/injection_action.h"
 #include "nodes/injection/injector_link.h"
 #include "nodes/injection/manipulator_watch.h"
@@ -38,10 +39,11 @@ namespace microinjection {
 ///      follow?), the other force, /cell/parameters and /cell/contact (see Witnesses), /injector/state,
 ///      /needle/interface (InterfacePosition, what suction has drawn in, where somebody sees it), /cell/estimate
 ///      (CellEstimate, the expected puncture); the action Inject on /controller/inject
+///      With a holder those of HolderLink
 /// Out: /needle/servo_cp (PoseStamped, `world`), /controller/operating_state (OperatingState,
 ///      latched, on change and after each state_command), /controller/injection_state
 ///      (InjectionStatus, latched, on change and ten times a second), /injector/pulse,
-///      /injector/stop
+///      /injector/stop; with a holder those of HolderLink
 ///
 /// Parameters: config/injection_controller.yaml
 class InjectionControllerNode {
@@ -86,6 +88,7 @@ class InjectionControllerNode {
   Output<geometry_msgs::PoseStamped>& setpoint_;
   Output<cell_microinjection::InjectionStatus>& injection_;
   std::unique_ptr<InjectorLink> injector_;  ///< null without an injector
+  std::unique_ptr<HolderLink> holder_;      ///< null without a holder
   ForceLiveness force_lives_;
   Repetition<Eigen::Vector3d> needle_poses_;      ///< m, exposed to s over needle_patience_
   ros::Time watched_;                             ///< the last of them

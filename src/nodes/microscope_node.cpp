@@ -15,7 +15,7 @@ const char* const MicroscopeNode::kHelp =
     "microscope: the virtual microscope. Renders the session as its camera sees it.\n"
     "In: /cell/state, /needle/measured_cp or /needle/true_cp, tf of cell and holding_pipette, /focus/move_jp "
     "(JointState:\n"
-    "the plane in focus, m), /cell/bore /cell/held_tongue.\n"
+    "the plane in focus, m), /cell/bore /cell/hold.\n"
     "Out: microscope/image_raw microscope/camera_info /focus/measured_js.\n";
 
 MicroscopeNode::Parameters MicroscopeNode::Parameters::read(const Bus& bus) {
@@ -50,7 +50,7 @@ MicroscopeNode::MicroscopeNode(Bus& bus)
   needle_ = subscribeGuarded(bus, parameters_.needle == "true" ? "/needle/true_cp" : "/needle/measured_cp", kQueue,
                              &MicroscopeNode::onNeedle, this);
   bore_ = subscribeGuarded(bus, "/cell/bore", kQueue, &MicroscopeNode::onBore, this);
-  held_tongue_ = subscribeGuarded(bus, "/cell/held_tongue", kQueue, &MicroscopeNode::onHeldTongue, this);
+  hold_ = subscribeMeasured(bus, "/cell/hold", kQueue, &MicroscopeNode::onHold, this);
   focus_command_ = subscribeGuarded(bus, "/focus/move_jp", kQueue, &MicroscopeNode::onFocus, this, StampRule::kCommand);
   diagnostics_.add("images", this, &MicroscopeNode::report);
   timer_ = bus.timer(1 / parameters_.rate, [this] { step(); });
@@ -89,13 +89,15 @@ void MicroscopeNode::onBore(const cell_microinjection::BoreState& message) {
   bore_receipt_ = {message.header.stamp, bus_.steady()};
 }
 
-void MicroscopeNode::onHeldTongue(const cell_microinjection::HeldTongue& message) {
-  if (!std::isfinite(message.length) || message.length < 0) {
-    bus_.refusals().add("/cell/held_tongue", "its length is not at or above 0");
-    return;
-  }
-  specimen_.in_holder = message.length;
-  held_receipt_ = {message.header.stamp, bus_.steady()};
+void MicroscopeNode::onHold(const cell_microinjection::CellHold& message) {
+  const auto& q = message.orientation;
+  const Eigen::Quaterniond orientation(q.w, q.x, q.y, q.z);
+  const Eigen::Vector3d offset = toVector(message.offset);
+  if (!offset.allFinite() || !(std::abs(orientation.norm() - 1) < 1e-3) || message.tongue < 0)
+    return bus_.refusals().add("/cell/hold", "its pose is none, or its tongue below 0");
+  moved_ = Eigen::Translation3d(offset) * orientation;
+  specimen_.in_holder = std::isfinite(message.tongue) ? message.tongue : 0;
+  hold_receipt_ = {message.header.stamp, bus_.steady()};
 }
 
 bool MicroscopeNode::isFresh(const Receipt& receipt) const {
@@ -108,9 +110,11 @@ Specimen MicroscopeNode::specimen() const {
   Specimen specimen = specimen_;
   if (!needleIsFresh()) specimen.needle.reset();
   if (!isFresh(bore_receipt_)) specimen.in_needle.reset();
-  if (!isFresh(held_receipt_)) specimen.in_holder = 0;
+  const bool hold_tells = isFresh(hold_receipt_);
+  if (!hold_tells) specimen.in_holder = 0;
   specimen.cell = *frames_.find("world", cell_frame_);
   for (Eigen::Vector3d& vertex : specimen.vertices) vertex = specimen.cell * vertex;
+  if (hold_tells) specimen.cell = specimen.cell * moved_;  // the surface is there already
   specimen.holder = frames_.find("world", "holding_pipette");
   return specimen;
 }

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cell_microinjection/BoreState.h>
+#include <cell_microinjection/CellHold.h>
 #include <cell_microinjection/CellState.h>
-#include <cell_microinjection/HeldTongue.h>
 #include <geometry_msgs/PoseStamped.h>
 #include <sensor_msgs/JointState.h>
 
@@ -23,7 +23,7 @@ namespace microinjection {
 ///
 /// In:  /cell/state, /needle/measured_cp or /needle/true_cp, tf of cell and holding_pipette in world,
 ///      /focus/move_jp (JointState, position[0]: m, the world's y of the plane in focus), /cell/bore (BoreState: what
-///      the needle has drawn in), /cell/held_tongue (HeldTongue: what the holding pipette has)
+///      the needle has drawn in), /cell/hold (CellHold: what the holding pipette has, and where the cell is)
 /// Out: microscope/image_raw, microscope/camera_info, /focus/measured_js
 ///
 /// Parameters: config/microscope.yaml
@@ -51,7 +51,7 @@ class MicroscopeNode {
   void onState(const cell_microinjection::CellState& message);
   void onNeedle(const geometry_msgs::PoseStamped& message);
   void onBore(const cell_microinjection::BoreState& message);
-  void onHeldTongue(const cell_microinjection::HeldTongue& message);
+  void onHold(const cell_microinjection::CellHold& message);
   void onFocus(const sensor_msgs::JointState& message);
   bool isFresh(const Receipt& receipt) const;
   bool needleIsFresh() const;
@@ -71,14 +71,15 @@ class MicroscopeNode {
   std::string cell_frame_;  ///< of the last state
   std::string defect_;      ///< of the last state; empty: it can be drawn
   ros::SteadyTime received_, stepped_, reported_;
-  Receipt needle_receipt_, bore_receipt_, held_receipt_;
-  bool punctured_ = false;     ///< of the last state: a layer has failed
-  std::uint64_t frame_ = 0;    ///< number of images, which seeds their noise
-  unsigned rendered_ = 0;      ///< since reported_
-  double longest_render_ = 0;  ///< s, since reported_
+  Receipt needle_receipt_, bore_receipt_, hold_receipt_;
+  Eigen::Isometry3d moved_ = Eigen::Isometry3d::Identity();  ///< the cell, from its place at the start
+  bool punctured_ = false;                                   ///< of the last state: a layer has failed
+  std::uint64_t frame_ = 0;                                  ///< number of images, which seeds their noise
+  unsigned rendered_ = 0;                                    ///< since reported_
+  double longest_render_ = 0;                                ///< s, since reported_
 
   Publisher<sensor_msgs::JointState> focus_state_;
-  Subscription state_, needle_, bore_, held_tongue_, focus_command_;
+  Subscription state_, needle_, bore_, hold_, focus_command_;
   Diagnostics diagnostics_;
   BusHandle timer_;
 };

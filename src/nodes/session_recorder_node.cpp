@@ -12,6 +12,7 @@
 
 #include "base/atomic_file.h"
 #include "base/worker_processes.h"
+#include "cell_microinjection/CellHold.h"
 #include "cell_microinjection/HolderState.h"
 #include "cell_microinjection/OperatingState.h"
 #include "nodes/runtime/conversions.h"
@@ -175,7 +176,10 @@ void SessionRecorderNode::recordBag(SessionBag& bag) {
   bag.record(cell_);
   bag.record(injection_);
   if (injector_) bag.record(*injector_);
-  if (parameters_.holder) bag.record<cell_microinjection::HolderState>(cycle_.bus(), "/holder/state");
+  if (parameters_.holder) {
+    bag.record<cell_microinjection::HolderState>(cycle_.bus(), "/holder/state");
+    bag.record<cell_microinjection::CellHold>(cycle_.bus(), "/cell/hold");
+  }
   if (parameters_.hand) {
     bag.record(*hand_);
     bag.record(*clutch_);

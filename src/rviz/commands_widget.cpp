@@ -66,6 +66,9 @@ void CommandsWidget::press(std::size_t index) {
 
 void CommandsWidget::display(const SessionView& session) {
   for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const bool visible = session.settings.has_holder || !needsHolder(kConsoleCommands[i]);
+    rows_[i].button->setVisible(visible);
+    rows_[i].text->setVisible(visible);
     display(rows_[i], offer(kConsoleCommands[i], session), kConsoleCommands[i] == ConsoleCommand::kStop);
   }
 }

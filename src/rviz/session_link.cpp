@@ -79,6 +79,8 @@ void SessionLink::readSettings() {
   settings.force_limit = parameters.number("force_limit");
   settings.depth_limit = parameters.number("depth_limit");
   if (const auto duration = parameters.number("goal/pulse/duration")) settings.has_pulse = *duration > 0;
+  settings.has_holder = parameters.text("holder") == "true";
+  if (const auto suction = parameters.number("goal/holding/suction")) settings.holds = *suction > 0;
   settings.has_suction = parameters.text("goal/break_by") != "force";
   settings.error = parameters.error();
 }

@@ -22,10 +22,9 @@ QSize StepsWidget::sizeHint() const {
 }
 
 void StepsWidget::display(std::optional<InjectionState> state) {
-  const auto before = strip_.marks();
-  const bool fault = strip_.fault();
+  if (state != shown_) update();
+  shown_ = state;
   strip_.update(state);
-  if (strip_.marks() != before || strip_.fault() != fault) update();
 }
 
 void StepsWidget::paintEvent(QPaintEvent*) {
@@ -52,7 +51,7 @@ void StepsWidget::paintEvent(QPaintEvent*) {
     font.setBold(present);
     painter.setFont(font);
     painter.drawText(QRectF(left + kHead / 2.0, 0, wide - kHead / 2.0, height()), Qt::AlignCenter,
-                     toText(StepStrip::kSteps[i]));
+                     strip_.text(static_cast<std::size_t>(i)));
   }
 }
 

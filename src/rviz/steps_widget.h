@@ -20,6 +20,7 @@ class StepsWidget : public QWidget {
 
  private:
   StepStrip strip_;
+  std::optional<InjectionState> shown_;
 };
 
 }  // namespace microinjection

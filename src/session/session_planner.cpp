@@ -181,6 +181,11 @@ class Planner {
       setText(node, "families", package("config/families"));
     }
     addCell("cell_simulator", session_.cell, session_.model);
+    if (session_.holder == "none") return;
+    NodePlan& cell = plan_.nodes.back();
+    setFlag(cell, "holder", true);
+    const Session::Manipulator& rig = session_.holder_rig;
+    if (rig.present()) setText(cell, "holder_rig", rig.simulated() ? "true" : "measured");
   }
   /// Otherwise the simulated cell would follow itself: what the sensor feels, or the image shows, is the served cell.
   bool servesEstimate() const {
@@ -215,6 +220,7 @@ class Planner {
     setFlag(node, "start_when_enabled", session_.injection.start_when_enabled);
     setParameter(node.parameters, "goal/layers", integerValue(session_.injection.layers));
     setFlag(node, "injector", session_.injector != "none");
+    setFlag(node, "holder", session_.holder != "none");
   }
 
   void addBridge() {

@@ -7,6 +7,7 @@ the guards' bars in one to the right of it. It sees what an operator sees: a but
 import numpy
 
 BUTTONS = ("Enable", "Home", "Approach", "Indent", "Aspirate", "Inject", "Withdraw", "Disable")
+HOLDING = ("Enable", "Home", "Hold", "Approach", "Indent", "Aspirate", "Inject", "Withdraw", "Release", "Disable")  # of a session with a holder
 DEVICES = ("Rig", "Camera", "Sensor", "Hand", "Cell", "Injector")
 HAND = ("Needle", "Clutch", "Switch")
 ROWS = {"inject": (*DEVICES, "Estimate"), "teleoperate": (*HAND, *DEVICES)}  # of lamps
@@ -31,7 +32,7 @@ class NotSeen(Exception):
 class Console:
     """A picture's console; `name`: which of config/console. @raises NotSeen"""
 
-    def __init__(self, pixels, name="inject"):
+    def __init__(self, pixels, name="inject", buttons=BUTTONS):
         rows, columns = numpy.nonzero(has(pixels, STOP))
         if rows.size == 0 or rows.max() - rows.min() < LEAST_STOP:
             raise NotSeen("there is no stop button")
@@ -42,12 +43,12 @@ class Console:
         seen = [(rows_of, offered) for offered, colour in ((True, OFFERED), (False, REFUSED))
                 for rows_of in runs(column, colour) if rows_of[1] - rows_of[0] > LEAST_BUTTON]
         # The strip of steps is above them.
-        seen = sorted(seen)[-len(BUTTONS):]
-        if len(seen) < len(BUTTONS):
+        seen = sorted(seen)[-len(buttons):]
+        if len(seen) < len(buttons):
             raise NotSeen(f"there are {len(seen)} buttons")
         # Beside that column: the pointer is in the picture.
-        self.place = {name: (self.stop[0], (a + b) // 2) for name, ((a, b), _) in zip(BUTTONS, seen)}
-        self.offered = {name: offered for name, (_, offered) in zip(BUTTONS, seen)}
+        self.place = {name: (self.stop[0], (a + b) // 2) for name, ((a, b), _) in zip(buttons, seen)}
+        self.offered = {name: offered for name, (_, offered) in zip(buttons, seen)}
         first = seen[0][0][0]
         self.headline = self._lamps(pixels[first - 40:first, left - 8:left + 12])[-1:]
         self.lamps = dict(zip(ROWS[name], self._lamps(pixels[first:, right + 6:right + 34])))

@@ -14,42 +14,33 @@ from cell_microinjection.msg import StringStamped
 import console_eye
 from processes import Child
 from screen import Screen
-from slow_connection import SlowConnection
 
 PATIENCE = 150        # s of wall time; only a session or a console that hangs takes that long
 START_PATIENCE = 400  # s, for rviz on a busy machine
 SIZE = (1280, 800)    # px
-DELAY = 0.2           # s, of a slow connection
 
 
 class ConsoleUser:
     """For unittest.TestCase. `sent`: the commands on /controller/state_command."""
 
     @classmethod
-    def open_console(cls, name="inject", slow=None):
-        """slow: which connection to the X server is slow."""
-        cls.console = name
+    def open_console(cls, name="inject", session=("cell:=mouse_oocyte", "only:=display rviz"), buttons=console_eye.BUTTONS):
+        """session: what is launched."""
+        cls.console, cls.buttons = name, buttons
         os.environ.pop("DISPLAY", None)  # never the user's: the mouse is the test's
         cls.folder = tempfile.TemporaryDirectory()
         logs = Path(cls.folder.name)
         cls.screen = Screen(logs / "xvfb.log", SIZE, logs)
         cls.environment = {**os.environ, **cls.screen.environment}
-        cls.slow = None
-        if slow is not None:
-            cls.slow = SlowConnection(cls.screen.environment["DISPLAY"], slow, DELAY)
-            cls.environment.update(DISPLAY=cls.slow.name, QT_XCB_NO_MITSHM="1")  # file descriptors are not handed on
-        cls.rviz = Child(["roslaunch", "cell_microinjection", "session.launch", "cell:=mouse_oocyte", f"console:={name}",
-                          "only:=display rviz"], logs / "rviz.log", cls.environment)
+        cls.rviz = Child(["roslaunch", "cell_microinjection", "session.launch", f"console:={name}", *session], logs / "rviz.log", cls.environment)
         cls.sent = []
-        cls.seen, cls.picture = "nothing yet", None
+        cls.sight, cls.picture = "nothing yet", None
         cls.listener = rospy.Subscriber("/controller/state_command", StringStamped,
                                         lambda message: cls.sent.append(message.string))
 
     @classmethod
     def close_console(cls):
         cls.rviz.stop(10)
-        if cls.slow:
-            cls.slow.close()
         cls.screen.close()
         cls.folder.cleanup()
 
@@ -57,7 +48,7 @@ class ConsoleUser:
         """For the message of a test that fails."""
         rviz = "rviz has died" if self.died() else "rviz runs" if self.rviz.running() else "roslaunch has ended"
         colours = 0 if self.picture is None else len(numpy.unique(self.picture.reshape(-1, 3), axis=0))
-        return f"sent {self.sent}; seen: {self.seen}, of {colours} colours; {rviz}: {self.rviz.tail(10)}"
+        return f"sent {self.sent}; seen: {self.sight}, of {colours} colours; {rviz}: {self.rviz.tail(10)}"
 
     def died(self):
         """Whether rviz has; roslaunch goes on."""
@@ -76,11 +67,11 @@ class ConsoleUser:
         """The console; `picture`: all that is on the screen."""
         try:
             self.picture = console_eye.pixels_of(Path(self.folder.name) / "Xvfb_screen0")
-            console = console_eye.Console(self.picture, self.console)
-            self.seen = f"headline {console.headline}, lamps {console.lamps}, offered {console.offered}"
+            console = console_eye.Console(self.picture, self.console, self.buttons)
+            self.sight = f"headline {console.headline}, lamps {console.lamps}, offered {console.offered}"
             return console
         except console_eye.NotSeen as reason:
-            self.seen = str(reason)
+            self.sight = str(reason)
             return None
 
     def shows(self, condition, what, patience=PATIENCE):

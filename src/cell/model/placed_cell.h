@@ -7,8 +7,8 @@
 
 namespace microinjection {
 
-/// A cell that lies higher or lower than its scene has it, along the world's z axis. It moves there at a
-/// bounded speed, so that the force on a needle in contact changes steadily.
+/// A cell that is not where its scene has it: higher or lower along the world's z axis, where it moves at a bounded
+/// speed, so that the force on a needle in contact changes steadily; and where its holding pipette has it, at once.
 class PlacedCell : public CellModel {
  public:
   static constexpr double kSpeed = 10e-6;    ///< m/s
@@ -22,6 +22,8 @@ class PlacedCell : public CellModel {
   void moveTo(double height) { wanted_ = height; }
   /// m, of the last step. Any thread.
   double height() const { return height_; }
+  /// `offset`: m, of the cell from its place, besides its height, from the next step on. The thread that steps.
+  void follow(const Eigen::Vector3d& offset);
 
   TipForce step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time) override;
   void release() override {
@@ -44,7 +46,10 @@ class PlacedCell : public CellModel {
 
  private:
   CellModel& cell_;
+  Eigen::Vector3d place() const;
+
   std::atomic<double> wanted_{0}, height_{0};
+  std::array<std::atomic<double>, 3> offset_{};
   std::optional<double> time_;  ///< s, of the last step
   std::optional<Contact> contact_;
 };

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace microinjection {
 namespace {
@@ -60,6 +61,8 @@ const char* name(CellMode mode) {
       return "resting";
     case CellMode::kFree:
       return "free";
+    case CellMode::kCarried:
+      return "carried";
   }
   return "";
 }
@@ -70,7 +73,8 @@ CellMotion::CellMotion(const CellMotionConfig& config, const std::optional<Pipet
   config.validate();
   const double modulus = config.contactModulus();
   dish_stiffness_ = hertzStiffness(modulus, config.radius);
-  if (tip_) needle_stiffness_ = hertzStiffness(modulus, 1 / (1 / config.radius + 1 / tip_->edgeRadius()));
+  if (tip_) hertz_needle_stiffness_ = hertzStiffness(modulus, 1 / (1 / config.radius + 1 / tip_->edgeRadius()));
+  needle_stiffness_ = hertz_needle_stiffness_;
   if (mouth_) {
     lip_.emplace(*mouth_, config.radius, modulus);
     suction_.emplace(*mouth_, config);
@@ -456,6 +460,7 @@ void CellMotion::report(double duration, const Motion& motion) {
     const double share = suction_->share(gap, notch_);
     state_.suction = -now_.pressure * suction_->area() * share;
     state_.leak = -now_.pressure * suction_->flow(share);
+    state_.seal_resistance = share < 1 ? share / suction_->flow(share) : std::numeric_limits<double>::infinity();
     const double radial = std::hypot(own.x(), own.y());
     swallowed_ = suction_->swallows() && mouth_->side() * own.z() > 0 && radial < mouth_->innerRadius();
   }

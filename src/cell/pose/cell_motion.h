@@ -41,7 +41,8 @@ enum class CellMode {
   kSlipping,   ///< the same, and it slides on the lip at Coulomb's limit
   kLost,       ///< further from the mouth than CellMotionConfig::lost_distance
   kResting,    ///< on the dish
-  kFree
+  kFree,
+  kCarried  ///< by a needle in it: of CellHold only
 };
 const char* name(CellMode mode);
 
@@ -71,9 +72,10 @@ struct CellMotionState {
   CellMode mode = CellMode::kFree;
   bool sealed = false;  ///< the lip touches the cell all round
   CellContactForce lip, dish, needle;
-  double suction = 0;   ///< N, towards the middle of the mouth; < 0 when the pipette blows
-  double leak = 0;      ///< m^3/s, into the holding pipette
-  double dish_gap = 0;  ///< m, negative: the dish indents the cell
+  double suction = 0;          ///< N, towards the middle of the mouth; < 0 when the pipette blows
+  double leak = 0;             ///< m^3/s, into the holding pipette
+  double seal_resistance = 0;  ///< Pa s/m^3, of the gap between lip and cell; infinite: closed
+  double dish_gap = 0;         ///< m, negative: the dish indents the cell
   CellMotionEnergy energy;
   int iterations = 0;             ///< Newton's, of the last step
   const char* refusal = nullptr;  ///< why the last input was not used and the state held; null: it was used
@@ -113,6 +115,10 @@ class CellMotion {
 
   const CellMotionState& state() const { return state_; }
   const CellMotionConfig& config() const { return config_; }
+
+  /// N/m^(3/2), of force over overlap^(3/2) at the needle, from the next step on: Hertz's is that of small dents.
+  void setNeedleStiffness(double stiffness) { needle_stiffness_ = stiffness; }
+  double hertzNeedleStiffness() const { return hertz_needle_stiffness_; }
 
   /// What the mouth can hold at a pressure (Pa; only suction holds). Nothing without a mouth, or when it is wider than
   /// the cell.
@@ -160,8 +166,8 @@ class CellMotion {
   std::optional<RoundedTip> tip_;
   std::optional<LipContact> lip_;
   std::optional<LipSuction> suction_;
-  const WallResistance* wall_;                    ///< one for all cells
-  double dish_stiffness_, needle_stiffness_ = 0;  ///< N/m^(3/2), Hertz
+  const WallResistance* wall_;                                                 ///< one for all cells
+  double dish_stiffness_, hertz_needle_stiffness_ = 0, needle_stiffness_ = 0;  ///< N/m^(3/2)
 
   CellMotionState state_;
   bool swallowed_ = false;

@@ -37,6 +37,7 @@ double CellMotionConfig::drag() const { return 6 * M_PI * viscosity * radius; }
 void CellMotionConfig::read(ConfigReader reader) {
   ConfigReader coefficients = reader.section("friction");
   visitMotionFields(*this, [&](const std::string& key, double& value, const Range& range, const char*) {
+    if (key == "radius") return;  // the cell's
     const std::size_t slash = key.find('/');
     ConfigReader& from = slash == std::string::npos ? reader : coefficients;
     from.number(slash == std::string::npos ? key : key.substr(slash + 1), value, range);

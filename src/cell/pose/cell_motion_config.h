@@ -39,7 +39,7 @@ struct CellMotionConfig {
   double weight() const;          ///< N, less buoyancy
   double drag() const;            ///< N s/m, 6 pi mu R
 
-  /// Reads the keys, which are the fields' names; SI.
+  /// Reads the keys, which are the fields' names, but for the radius; SI.
   void read(ConfigReader reader);
   /// Throws ConfigError with all errors.
   void validate() const;

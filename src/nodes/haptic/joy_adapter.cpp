@@ -8,7 +8,8 @@ JoyConfig JoyConfig::read(ConfigReader& reader) {
   reader.number("timeout", config.timeout, Range::positive());
   config.stick = RateInputConfig::read(reader);
   ConfigReader commands = reader.section("commands");
-  for (const char* command : {"enable", "disable", "inject", "home"}) {
+  for (const char* command :
+       {"enable", "disable", "inject", "home", "hold", "approach", "indent", "aspirate", "withdraw", "release"}) {
     int button = -1;
     commands.integer(command, button, Range::closed(-1, 63));
     if (button >= 0) config.commands.emplace_back(command, button);

@@ -11,7 +11,8 @@ constexpr double kTextPeriod = 0.1;  // s
 constexpr char kKeys[] =
     "arrows: left, right, up (out of the cell), down (into it)   page up, page down: away, to you   hold a key to "
     "move\n"
-    "e enable   i inject   w withdraw (home)   d disable   + - longer and shorter steps   space: release   q quit\n";
+    "e enable   h hold   i inject   w withdraw (home)   r release   d disable   + - longer and shorter steps   space: "
+    "release   q quit\n";
 
 const std::map<std::string, Eigen::Vector3d>& directions() {
   static const std::map<std::string, Eigen::Vector3d> all{{"left", {-1, 0, 0}},   {"right", {1, 0, 0}},
@@ -21,8 +22,8 @@ const std::map<std::string, Eigen::Vector3d>& directions() {
 }
 
 const std::map<std::string, std::string>& commands() {
-  static const std::map<std::string, std::string> all{
-      {"e", "enable"}, {"i", "inject"}, {"w", "home"}, {"d", "disable"}};
+  static const std::map<std::string, std::string> all{{"e", "enable"}, {"h", "hold"},    {"i", "inject"},
+                                                      {"w", "home"},   {"r", "release"}, {"d", "disable"}};
   return all;
 }
 

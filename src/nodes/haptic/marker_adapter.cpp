@@ -75,7 +75,8 @@ const Eigen::Vector3d kTextOffset{0, 0, 0.22};  // display units, of the text fr
 /// Titles of the menu's entries, and the commands.
 const std::vector<std::pair<std::string, std::string>>& menu() {
   static const std::vector<std::pair<std::string, std::string>> all{
-      {"Enable", "enable"}, {"Inject", "inject"}, {"Withdraw (home)", "home"}, {"Disable", "disable"}};
+      {"Enable", "enable"},        {"Hold the cell", "hold"},       {"Inject", "inject"},
+      {"Withdraw (home)", "home"}, {"Release the cell", "release"}, {"Disable", "disable"}};
   return all;
 }
 

@@ -75,7 +75,7 @@ cell_microinjection::BoreInImage toMessage(const BoreBorder& border) {
   return message;
 }
 
-cell_microinjection::HoldInImage toMessage(const CellHold& hold) {
+cell_microinjection::HoldInImage toMessage(const HoldDetection& hold) {
   cell_microinjection::HoldInImage message;
   setFinding(hold.finding, message);
   if (!hold.finding.hasValues()) return message;

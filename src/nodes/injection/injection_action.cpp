@@ -27,6 +27,10 @@ InjectionGoal toGoal(const cell_microinjection::InjectGoal& message) {
   goal.pulse.pressure = message.pressure;
   goal.pulse.duration = message.duration;
   goal.pulse.volume = message.volume;
+  if (message.holding_suction != 0 || message.release) {
+    goal.holding = {message.holding_suction, message.holding_time, message.release != 0, message.release_pressure,
+                    message.release_time};
+  }
   return goal;
 }
 

@@ -60,6 +60,22 @@ std::string refusalOfStep(const SessionView& session, InjectionState from, bool 
   return session.injection == from ? "" : no_step;
 }
 
+std::string refusalOfHold(const SessionView& session) {
+  if (!session.settings.has_holder) return "there is no holder";
+  if (!session.settings.holds) return "the goal has no suction to hold with";
+  if (!session.byHand()) return refusalOfApproach(session);
+  return session.operating == OperatingState::kEnabled ? "" : stateIs(session) + ", it is allowed in ENABLED";
+}
+
+std::string refusalOfRelease(const SessionView& session) {
+  if (!session.settings.has_holder) return "there is no holder";
+  if (session.injection == InjectionState::kRelease) return refusalOfStep(session, InjectionState::kRelease, false);
+  if (session.operating != OperatingState::kEnabled) return stateIs(session) + ", it is allowed in ENABLED";
+  if ((!session.byHand() && !inIdle(session)) || touched(session))
+    return "the needle may be in the cell; a cell is let go in idle, with the needle out";
+  return "";
+}
+
 std::string refusalOfWithdraw(const SessionView& session) {
   if (session.byHand()) return "mode is manual: the hand withdraws the needle, or home";
   const bool held = session.operating == OperatingState::kEnabled || session.operating == OperatingState::kPaused;
@@ -81,6 +97,10 @@ CommandOffer describe(ConsoleCommand command) {
   switch (command) {
     case ConsoleCommand::kHome:
       return {"Home", "home", "withdraws the needle, then pauses", ""};
+    case ConsoleCommand::kHold:
+      return {"Hold", "hold", "the holding pipette takes the cell", ""};
+    case ConsoleCommand::kRelease:
+      return {"Release", "release", "the holding pipette lets the cell go", ""};
     case ConsoleCommand::kApproach:
       return {"Approach", "approach", "starts an injection", ""};
     case ConsoleCommand::kIndent:
@@ -100,8 +120,13 @@ std::string refusalOf(ConsoleCommand command, const SessionView& session) {
   switch (command) {
     case ConsoleCommand::kHome:
       return refusalOfHome(session);
+    case ConsoleCommand::kHold:
+      return refusalOfHold(session);
+    case ConsoleCommand::kRelease:
+      return refusalOfRelease(session);
     case ConsoleCommand::kApproach:
-      return refusalOfApproach(session);
+      return session.injection == InjectionState::kHold ? refusalOfStep(session, InjectionState::kHold, false)
+                                                        : refusalOfApproach(session);
     case ConsoleCommand::kIndent:
       return refusalOfStep(session, InjectionState::kContact, false);
     case ConsoleCommand::kAspirate:

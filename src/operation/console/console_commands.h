@@ -8,11 +8,27 @@
 namespace microinjection {
 
 /// The console's buttons, from top to bottom.
-enum class ConsoleCommand { kEnable, kHome, kApproach, kIndent, kAspirate, kInject, kWithdraw, kDisable, kStop };
-constexpr std::array<ConsoleCommand, 9> kConsoleCommands = {
-    ConsoleCommand::kEnable,   ConsoleCommand::kHome,     ConsoleCommand::kApproach,
-    ConsoleCommand::kIndent,   ConsoleCommand::kAspirate, ConsoleCommand::kInject,
-    ConsoleCommand::kWithdraw, ConsoleCommand::kDisable,  ConsoleCommand::kStop};
+enum class ConsoleCommand {
+  kEnable,
+  kHome,
+  kHold,
+  kApproach,
+  kIndent,
+  kAspirate,
+  kInject,
+  kWithdraw,
+  kRelease,
+  kDisable,
+  kStop
+};
+constexpr std::array<ConsoleCommand, 11> kConsoleCommands = {
+    ConsoleCommand::kEnable,  ConsoleCommand::kHome,     ConsoleCommand::kHold,   ConsoleCommand::kApproach,
+    ConsoleCommand::kIndent,  ConsoleCommand::kAspirate, ConsoleCommand::kInject, ConsoleCommand::kWithdraw,
+    ConsoleCommand::kRelease, ConsoleCommand::kDisable,  ConsoleCommand::kStop};
+/// A session without a holder has no such button.
+constexpr bool needsHolder(ConsoleCommand command) {
+  return command == ConsoleCommand::kHold || command == ConsoleCommand::kRelease;
+}
 
 /// What a button does now.
 struct CommandOffer {

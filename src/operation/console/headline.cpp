@@ -19,6 +19,10 @@ bool heldByAlarm(const SessionView& session) {
 
 std::string nextSteps(const SessionView& session) {
   switch (*session.injection) {
+    case InjectionState::kHold:
+      return "the cell is held; waits for Approach or Withdraw";
+    case InjectionState::kRelease:
+      return "waits for Release";
     case InjectionState::kContact:
       return "waits for Indent or Withdraw";
     case InjectionState::kIndent:
@@ -34,7 +38,8 @@ std::string enabledText(const SessionView& session) {
   if (session.waits) return nextSteps(session);
   if (*session.injection == InjectionState::kIdle && !session.busy) {
     if (session.byHand()) return session.hold_reason.empty() ? "follows the hand" : session.hold_reason;
-    return "ready: Approach starts an injection";
+    const bool holds = session.settings.has_holder && session.settings.holds;
+    return holds ? "ready: Hold starts an injection" : "ready: Approach starts an injection";
   }
   if (session.busy) return session.hold_reason.empty() ? "moves by itself" : session.hold_reason;
   return session.hold_reason.empty() ? "follows the hand" : session.hold_reason;

@@ -13,6 +13,8 @@ namespace microinjection {
 struct ControllerSettings {
   std::string mode;                   ///< manual, semi_automatic or automatic; empty: not known
   bool has_pulse = true;              ///< the configured goal injects
+  bool has_holder = false;            ///< whose pressure the controller commands
+  bool holds = true;                  ///< the configured goal has a suction to hold the cell with
   bool has_suction = true;            ///< the configured goal breaks the last membrane by suction
   std::optional<double> force_limit;  ///< N, along the pipette
   std::optional<double> depth_limit;  ///< m past the contact point

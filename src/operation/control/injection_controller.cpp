@@ -26,6 +26,7 @@ InjectionController::InjectionController(const InjectionControllerConfig& config
       witness_(config.detection, config.witness),
       withdrawal_(config.guards),
       run_(config.motion, config.guards, config.expectation, config.break_detection, config.mode == "automatic"),
+      holding_(config.holding),
       following_error_limit_(followingErrorLimit(config.guards, std::numeric_limits<double>::infinity())) {}
 
 std::string InjectionController::adaptTo(double speed, double lag) {
@@ -102,7 +103,7 @@ void InjectionController::refuseForce(Input& input) {
       isValid(input.force) && sensor ? sensorFault(config_.guards, *input.force, input.axis, predicted) : "";
   if (sensor_fault_.empty()) return;
   input.force.reset();
-  const bool withdraws = homing_ || injection_ == InjectionState::kWithdraw;
+  const bool withdraws = homing_ || injection_ == InjectionState::kWithdraw || needleWaits(injection_);
   if (state_ != OperatingState::kEnabled || withdraws) return;
   endPulse(sensor_fault_);
   run_.end(InjectionOutcome::kGuard, sensor_fault_);
@@ -114,6 +115,7 @@ std::optional<Eigen::Vector3d> InjectionController::step(Input input, double dt)
   const bool needle_valid = isValid(input.needle);
   needle_valid_ = needle_valid_ || needle_valid;
   if (needle_valid && isValid(input.force)) guard_force_ = input.force->dot(input.axis);
+  if (config_.holder) watchHold(input, dt);
   refuseForce(input);
   if (state_ == OperatingState::kDisabled || state_ == OperatingState::kFault) {
     // Something else may have moved the needle out of the cell.
@@ -185,6 +187,14 @@ bool InjectionController::rigIsAtFault(const Eigen::Vector3d& needle, double dt)
   return true;
 }
 
+void InjectionController::watchHold(const Input& input, double dt) {
+  const std::string before = holding_.loss(), failed = holding_.failure();
+  holding_.step(input.holder, input.cell_hold, dt);
+  const bool is_lost = byHand() && holding_.phase() == Holding::Phase::kHeld && !holding_.loss().empty();
+  if (is_lost && holding_.loss() != before) notice_ = holding_.loss();
+  if (holding_.failure() != failed && !holding_.failure().empty()) notice_ = holding_.failure();
+}
+
 void InjectionController::resetMonitors() {
   monitor_.reset();
   witness_.reset();
@@ -207,6 +217,7 @@ void InjectionController::observe(const Input& input, bool force_valid, double d
     witness_.skip();
   }
   denies_puncture_ = input.predicted_inside && !*input.predicted_inside;
+  predicted_inside_ = input.predicted_inside.value_or(false);
   witness_fault_ = input.witness_fault;
   witness_.step(*input.needle, input.axis, input.witness, input.witness_is_new);
   if (!force_valid) {
@@ -277,7 +288,8 @@ std::optional<Eigen::Vector3d> InjectionController::ownTarget(const Input& input
     hold_reason_ = "no injection is under way";
     return std::nullopt;
   }
-  if (!out && !isValid(input.force)) {
+  const bool needs_force = !out && !needleWaits(injection_);
+  if (needs_force && !isValid(input.force)) {
     hold_reason_ = "no valid force";
     // Without a force a puncture would not be detected.
     if (const char* work = blindWork()) {
@@ -287,7 +299,7 @@ std::optional<Eigen::Vector3d> InjectionController::ownTarget(const Input& input
     endPulse(hold_reason_);
     return std::nullopt;
   }
-  const std::string beyond = out ? "" : guard(input);
+  const std::string beyond = needs_force ? guard(input) : "";
   if (!beyond.empty()) {
     stop(InjectionOutcome::kGuard, beyond);
     stopNeedle(input);
@@ -295,8 +307,9 @@ std::optional<Eigen::Vector3d> InjectionController::ownTarget(const Input& input
   }
   run_.expect(input.expected);
   run_.see(input.interface);
+  if (config_.holder) run_.see(holding_);
   InjectionRun::Step step = run_.step(injection_, monitor_, input.injector, *setpoint_, input.axis, dt);
-  if (!step.stop) step.reason = out || run_.result().punctures > 0 ? "" : disagreement();
+  if (!step.stop) step.reason = !needs_force || run_.result().punctures > 0 ? "" : disagreement();
   if (step.event == InjectionEvent::kInject && step.reason.empty() && run_.goal().puncture)
     step.reason = contradiction();
   if (!step.stop && !step.reason.empty()) {
@@ -311,6 +324,7 @@ std::optional<Eigen::Vector3d> InjectionController::ownTarget(const Input& input
 /// Applies a step of the injection. Returns whether it continues.
 bool InjectionController::applyStep(const InjectionRun::Step& step) {
   if (step.event) apply(*step.event);
+  if (step.releases) holding_.release(run_.goal().holding);
   if (step.stop) stop(*step.stop, step.reason);
   return !step.stop;
 }
@@ -402,8 +416,12 @@ InjectionControllerConfig InjectionControllerConfig::read(ConfigReader& reader) 
   config.witness.read(witness);
   ConfigReader breaks = reader.section("break_detection");
   config.break_detection = BreakDetectionConfig::read(breaks);
+  reader.boolean("holder", config.holder);
+  ConfigReader holding = reader.section("holding");
+  config.holding = HoldingConfig::read(holding);
   ConfigReader goal = reader.section("goal");
   config.goal = InjectionGoal::read(goal);
+  if (config.holding.rest >= config.goal.holding.time) holding.error("rest", "must be below goal/holding/time");
   if (config.goal.depth > config.guards.depth_limit) goal.error("depth", "must not be above depth_limit");
   if (config.goal.break_by != BreakBy::kForce && config.goal.suction.dent > config.goal.depth)
     goal.error("suction/dent", "must not be above depth");
@@ -417,7 +435,12 @@ std::string InjectionController::command(const std::string& command) {
 }
 
 std::string InjectionController::execute(const std::string& command) {
-  if (command == "approach") return start(config_.goal);
+  if (command == "approach") {
+    const bool next = injection_ == InjectionState::kHold;
+    return next ? applyOperatorCommand(InjectionEvent::kStart) : start(config_.goal);
+  }
+  if (command == "hold") return holdCell();
+  if (command == "release") return releaseCell();
   if (command == "indent") return applyOperatorCommand(InjectionEvent::kIndent);
   if (command == "aspirate") return applyOperatorCommand(InjectionEvent::kAspirate);
   if (command == "inject") return applyOperatorCommand(InjectionEvent::kInject);
@@ -429,8 +452,8 @@ std::string InjectionController::applyCommand(const std::string& text) {
   const auto command = stateCommandOf(text);
   if (!command) {
     return "\"" + text +
-           "\" is no command here; allowed: enable, disable, pause, resume, home, unhome, approach, indent, aspirate, "
-           "inject, withdraw";
+           "\" is no command here; allowed: enable, disable, pause, resume, home, unhome, hold, approach, indent, "
+           "aspirate, inject, withdraw, release";
   }
   std::string refusal = *command == StateCommand::kHome ? goHome() : change(*command);
   if (!refusal.empty()) return refusal;
@@ -503,9 +526,35 @@ std::string InjectionController::start(const InjectionGoal& goal) {
     text << "depth = " << goal.depth << " m, allowed up to depth_limit = " << config_.guards.depth_limit << " m";
     return text.str();
   }
+  const bool holds = goal.holding.suction > 0;
+  if ((holds || goal.holding.release) && !config_.holder)
+    return "the goal holds or releases the cell, and no holder is there";
+  if (holding_.phase() == Holding::Phase::kReleasing) return "the holding pipette lets the cell go";
   run_.start(goal, *setpoint_);
   resetMonitors();
-  apply(InjectionEvent::kStart);
+  if (holds) holding_.take(goal.holding);
+  apply(holds ? InjectionEvent::kHold : InjectionEvent::kStart);
+  return "";
+}
+
+std::string InjectionController::holdCell() {
+  if (!config_.holder) return "there is no holder";
+  if (config_.goal.holding.suction <= 0) return "the goal has no suction to hold with";
+  if (!byHand()) return start(config_.goal);
+  if (state_ != OperatingState::kEnabled)
+    return std::string("state is ") + toText(state_) + ", it is allowed in ENABLED";
+  holding_.take(config_.goal.holding);
+  return "";
+}
+
+std::string InjectionController::releaseCell() {
+  if (!config_.holder) return "there is no holder";
+  if (injection_ == InjectionState::kRelease) return applyOperatorCommand(InjectionEvent::kRelease);
+  if (state_ != OperatingState::kEnabled)
+    return std::string("state is ") + toText(state_) + ", it is allowed in ENABLED";
+  if ((!byHand() && injection_ != InjectionState::kIdle) || monitor_.touched() || predicted_inside_)
+    return "the needle may be in the cell; a cell is let go in idle, with the needle out";
+  holding_.release(config_.goal.holding);
   return "";
 }
 

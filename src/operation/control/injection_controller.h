@@ -12,6 +12,7 @@
 #include "operation/control/force_witness.h"
 #include "operation/control/guards.h"
 #include "operation/control/hand_observer.h"
+#include "operation/control/holding.h"
 #include "operation/control/injection_goal.h"
 #include "operation/control/injection_run.h"
 #include "operation/control/injection_state.h"
@@ -31,6 +32,8 @@ struct InjectionControllerConfig {
   ExpectationConfig expectation;
   WitnessConfig witness;
   BreakDetectionConfig break_detection;
+  bool holder = false;  ///< there is one, whose pressure is commanded
+  HoldingConfig holding;
   InjectionGoal goal;  ///< for injections started without one
 
   static InjectionControllerConfig read(ConfigReader& reader);
@@ -72,6 +75,7 @@ struct InjectionControllerConfig {
 ///     expected puncture   -                             indent: stops
 ///     witnesses disagree  -                             stops; a pulse does not begin
 ///     time in a state     -                             stops, also during withdrawal
+///     cell is not held    -                             stops, except during withdrawal
 ///     sensor at fault     PAUSED, a pulse ends          stops, except during withdrawal
 ///     no valid force      held meanwhile                indent, aspirate, inject: stops; withdraw:
 ///                                                       none; else held meanwhile
@@ -94,13 +98,15 @@ class InjectionController {
     std::optional<Eigen::Vector3d> force;   ///< N, of the cell on the tip, `world`
     bool force_is_new = true;               ///< another reading than that of the last step
     std::optional<InjectorReport> injector;
-    std::string rig_hold;                             ///< why the rig does not follow set-points; empty: it does
-    std::optional<ExpectedPuncture> expected;         ///< of the outermost membrane
-    std::optional<Eigen::Vector3d> witness;           ///< N, as `force`, of the source that it is not: see ForceWitness
-    bool witness_is_new = true;                       ///< as force_is_new
-    std::string witness_fault;                        ///< why it cannot be believed; empty: it can, or there is none
-    std::optional<Image> image;                       ///< of the tip before the cell, when it is sure
-    std::optional<InterfaceReading> interface;        ///< in the needle's bore, when an image shows it
+    std::string rig_hold;                       ///< why the rig does not follow set-points; empty: it does
+    std::optional<ExpectedPuncture> expected;   ///< of the outermost membrane
+    std::optional<Eigen::Vector3d> witness;     ///< N, as `force`, of the source that it is not: see ForceWitness
+    bool witness_is_new = true;                 ///< as force_is_new
+    std::string witness_fault;                  ///< why it cannot be believed; empty: it can, or there is none
+    std::optional<Image> image;                 ///< of the tip before the cell, when it is sure
+    std::optional<InterfaceReading> interface;  ///< in the needle's bore, when an image shows it
+    std::optional<HolderReport> holder;
+    std::optional<HoldReport> cell_hold;              ///< when somebody sees it
     std::optional<bool> predicted_inside;             ///< whether the cell whose force is predicted is punctured
     bool cell_changed = false;                        ///< its force now is no event of the needle
     Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< of the pipette, out of the cell, `world`
@@ -115,8 +121,10 @@ class InjectionController {
   /// - home: withdraws the needle along the pipette, moves it across to where it was enabled, never
   ///   deeper than it is, and pauses. It needs no valid force.
   /// - unhome: ends an injection and holds the needle until home.
-  /// - approach: starts the configured goal. indent, aspirate, inject: the operator's next step. By hand only
-  ///   inject is allowed.
+  /// - approach: starts the configured goal, or is the operator's next step when the cell is held. indent, aspirate,
+  ///   inject: the operator's next step. By hand only inject is allowed.
+  /// - hold: the holding pipette takes the cell. By itself it begins the configured goal, if that has a suction.
+  ///   release: it lets the cell go, with the needle out of it. Both are allowed by hand.
   /// - withdraw: ends (preempts) an injection in any state and returns the needle to its start,
   ///   also after a guard, and from the cell after disable. After a pause by the operator the
   ///   needle is PAUSED again when it is out.
@@ -166,6 +174,9 @@ class InjectionController {
   /// The pulse for the injector now, whose pressure may change while it lasts; a suction is one below the pressure
   /// between pulses. Empty: none, a pulse under way must stop.
   std::optional<PulseGoal> pulse() const;
+  /// The pressure wanted in the mouth of the holding pipette; empty: nobody has asked for one.
+  const std::optional<HolderCommand>& holderCommand() const { return holding_.command(); }
+  const Holding& holding() const { return holding_; }
 
  private:
   bool byHand() const { return config_.mode == "manual"; }
@@ -178,6 +189,8 @@ class InjectionController {
   std::string change(StateCommand command);
   std::string goHome();
   std::string applyOperatorCommand(InjectionEvent event);
+  std::string holdCell();
+  std::string releaseCell();
   void apply(InjectionEvent event);
   bool isInside(const Eigen::Vector3d& needle, const Eigen::Vector3d& axis) const;
   void engage(const Eigen::Vector3d& needle, const Eigen::Vector3d& axis);
@@ -187,6 +200,7 @@ class InjectionController {
   bool rigIsAtFault(const Eigen::Vector3d& needle, double dt);
   void monitorManualPulse(const Input& input, double dt);
   void observe(const Input& input, bool force_valid, double dt);
+  void watchHold(const Input& input, double dt);
   void resetMonitors();
   std::string contradiction() const;
   void monitorPulse(const Input& input, double dt);
@@ -210,12 +224,14 @@ class InjectionController {
   InjectionState injection_ = InjectionState::kIdle;
   NeedleMonitor monitor_;
   ForceWitness witness_;
-  std::string witness_fault_;     ///< of the last step
-  bool denies_puncture_ = false;  ///< the model of the predicted force has no puncture where the needle is
-  double guard_force_ = 0;        ///< N
-  WithdrawalGuard withdrawal_;    ///< by hand
+  std::string witness_fault_;      ///< of the last step
+  bool predicted_inside_ = false;  ///< the needle, in the cell whose force is predicted
+  bool denies_puncture_ = false;   ///< the model of the predicted force has no puncture where the needle is
+  double guard_force_ = 0;         ///< N
+  WithdrawalGuard withdrawal_;     ///< by hand
   HandObserver observer_;
   InjectionRun run_;
+  Holding holding_;
   InjectorWait hand_pulse_;
   bool pulse_by_hand_ = false;
   int punctures_ = 0;

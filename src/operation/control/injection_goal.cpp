@@ -49,6 +49,17 @@ const Number kNumbers[] = {
      "m",
      {0, Limits::kDistance, true, false},
      [](InjectionGoal& g) -> double& { return g.suction.length; }},
+    {"holding", "suction", "Pa", Range::closed(0, Limits::kSuction),
+     [](InjectionGoal& g) -> double& { return g.holding.suction; }},
+    {"holding",
+     "time",
+     "s",
+     {0, Limits::kDuration, true, false},
+     [](InjectionGoal& g) -> double& { return g.holding.time; }},
+    {"holding", "release_pressure", "Pa", Range::closed(0, Limits::kBlow),
+     [](InjectionGoal& g) -> double& { return g.holding.release_pressure; }},
+    {"holding", "release_time", "s", Range::closed(0, Limits::kDuration),
+     [](InjectionGoal& g) -> double& { return g.holding.release_time; }},
 };
 
 }  // namespace
@@ -61,11 +72,17 @@ InjectionGoal InjectionGoal::read(ConfigReader& reader) {
   reader.choice("break_by", by, {std::begin(kBreakBy), std::end(kBreakBy)});
   goal.break_by = breakByOf(by).value_or(goal.break_by);
   ConfigReader pulse = reader.section("pulse"), suction = reader.section("suction");
+  ConfigReader holding = reader.section("holding");
+  holding.boolean("release", goal.holding.release);
   for (const Number& number : kNumbers) {
     const std::string section = number.section;
-    ConfigReader& keys = section == "pulse" ? pulse : section == "suction" ? suction : reader;
+    ConfigReader& keys = section == "pulse"     ? pulse
+                         : section == "suction" ? suction
+                         : section == "holding" ? holding
+                                                : reader;
     keys.number(number.key, number.in(goal), number.allowed);
   }
+  if (goal.holding.release_time >= goal.holding.time) holding.error("release_time", "must be below time");
   return goal;
 }
 
@@ -82,6 +99,8 @@ std::string InjectionGoal::problems() const {
     check((section.empty() ? "" : section + "/") + number.key, number.in(goal), number.allowed,
           std::string(" ") + number.unit);
   }
+  if (holding.release_time >= holding.time)
+    text << (text.tellp() > 0 ? "; " : "") << "holding/release_time must be below holding/time";
   return text.str();
 }
 
@@ -94,9 +113,9 @@ std::optional<BreakBy> breakByOf(const std::string& name) {
 }
 
 const char* toText(InjectionOutcome outcome) {
-  constexpr const char* kWords[] = {"none",          "injected",          "punctured",    "indented",  "no_contact",
-                                    "not_punctured", "injector_time_out", "not_injected", "preempted", "guard",
-                                    "fault",         "disabled"};
+  constexpr const char* kWords[] = {"none",     "injected",      "punctured",         "indented",     "no_contact",
+                                    "not_held", "not_punctured", "injector_time_out", "not_injected", "preempted",
+                                    "guard",    "fault",         "disabled"};
   return kWords[static_cast<int>(outcome)];
 }
 

@@ -30,6 +30,15 @@ struct SuctionGoal {
   double length = 50e-6;  ///< m from the mouth, of the interface in the image, that ends it
 };
 
+/// How a goal holds the cell, see Holding.
+struct HoldingGoal {
+  double suction = 0;             ///< Pa below the bath; 0: it is held already
+  double time = 10;               ///< s, in which it must be held, and let go
+  bool release = false;           ///< lets it go when the needle is out
+  double release_pressure = 200;  ///< Pa, gauge, that blows it off
+  double release_time = 1;        ///< s
+};
+
 /// State of the injector.
 struct InjectorReport {
   bool busy = false;      ///< a pulse is under way
@@ -50,6 +59,7 @@ struct InjectionGoalLimits {
   static constexpr double kDuration = 60;    ///< s, as the duration_range of config/injector.yaml
   static constexpr double kVolume = 1e-9;    ///< m^3, the volume of the largest cells
   static constexpr double kSuction = 90e3;   ///< Pa; more is a vacuum
+  static constexpr double kBlow = 10e3;      ///< Pa, gauge, that lets a cell go; more shoots it away
 };
 
 /// Parameters of one injection that the controller moves. InjectionMotionConfig has the speeds,
@@ -63,6 +73,7 @@ struct InjectionGoal {
   BreakBy break_by = BreakBy::kForce;
   SuctionGoal suction;
   PulseGoal pulse;
+  HoldingGoal holding;
 
   static InjectionGoal read(ConfigReader& reader);
   /// Checks a received goal. Returns each number that is not finite or beyond InjectionGoalLimits,
@@ -77,6 +88,7 @@ enum class InjectionOutcome {
   kPunctured,        ///< punctured and withdrawn; the goal has no pulse
   kIndented,         ///< indented and withdrawn; the goal has no puncture
   kNoContact,        ///< no cell within the travel limit; withdrawn
+  kNotHeld,          ///< the holding pipette did not take the cell; the needle has not moved
   kNotPunctured,     ///< membrane intact at `depth`: held
   kInjectorTimeOut,  ///< the injector did not finish (withdrawn), or was stale (held)
   kNotInjected,      ///< the pulse was refused, aborted or delivered less than its volume; withdrawn

@@ -7,7 +7,25 @@ namespace microinjection {
 namespace {
 
 constexpr double kArrived = 0.3e-6;  ///< m of lag within which the needle counts as arrived
-constexpr double kSettling = 0.5;    ///< s, after which it counts as arrived anyway
+constexpr char kStillHeld[] = "the cell is still held";
+constexpr double kSettling = 0.5;  ///< s, after which it counts as arrived anyway
+
+/// Whether the goal was reached: only then a cell is let go.
+bool isDone(InjectionOutcome outcome) {
+  return outcome == InjectionOutcome::kInjected || outcome == InjectionOutcome::kPunctured ||
+         outcome == InjectionOutcome::kIndented;
+}
+
+/// What would be begun, and is not when it must stop; other events have happened.
+bool begins(InjectionEvent event) {
+  return event == InjectionEvent::kIndent || event == InjectionEvent::kAspirate || event == InjectionEvent::kInject;
+}
+
+/// Whether the needle does what it must not do to a cell that gives way.
+bool needsHold(InjectionState state) {
+  return state == InjectionState::kApproach || state == InjectionState::kContact || state == InjectionState::kIndent ||
+         state == InjectionState::kAspirate || state == InjectionState::kPunctured || state == InjectionState::kInject;
+}
 
 }  // namespace
 
@@ -46,8 +64,10 @@ std::string InjectionRun::confirm(InjectionEvent event, InjectionState state) {
   if (event == InjectionEvent::kInject && (injected_ || goal_.pulse.duration <= 0)) {
     return injected_ ? "it is injected already" : "the goal has no pulse";
   }
-  const InjectionState from = event == InjectionEvent::kIndent     ? InjectionState::kContact
+  const InjectionState from = event == InjectionEvent::kStart      ? InjectionState::kHold
+                              : event == InjectionEvent::kIndent   ? InjectionState::kContact
                               : event == InjectionEvent::kAspirate ? InjectionState::kIndent
+                              : event == InjectionEvent::kRelease  ? InjectionState::kRelease
                                                                    : InjectionState::kPunctured;
   const bool fits = state == state_ && state == from && (event != InjectionEvent::kAspirate || drawsNext());
   if (!awaits_command_ || !fits)
@@ -65,7 +85,8 @@ InjectionOutcome InjectionRun::done() const {
 }
 
 void InjectionRun::withdraw() {
-  state_time_ = 0;  // also after a time guard during a withdrawal
+  state_time_ = 0;                                           // also after a time guard during a withdrawal
+  if (state_ == InjectionState::kRelease) released_ = true;  // no more than it is
   if (!active_ || outcome_ != InjectionOutcome::kNone) return;
   outcome_ = done();
 }
@@ -94,6 +115,7 @@ bool InjectionRun::mayProceed(InjectionEvent event) {
 }
 
 std::string InjectionRun::wait(InjectionState state, double dt) {
+  if (needleWaits(state)) return "";  // Holding has its own limits
   state_time_ += dt;
   return timeGuard(guards_, toText(state), state_time_);
 }
@@ -102,7 +124,7 @@ InjectionRun::Step InjectionRun::step(InjectionState state, const NeedleMonitor&
                                       const std::optional<InjectorReport>& injector, const Eigen::Vector3d& setpoint,
                                       const Eigen::Vector3d& axis, double dt) {
   if (state != state_) enter(state, monitor);
-  state_time_ += awaits_command_ ? 0 : dt;
+  state_time_ += awaits_command_ || needleWaits(state) ? 0 : dt;
   if (active_) {
     result_.duration += dt;
     result_.peak_force = std::max(result_.peak_force, monitor.peakForce());
@@ -112,6 +134,7 @@ InjectionRun::Step InjectionRun::step(InjectionState state, const NeedleMonitor&
   travel_ = std::min(travel_, (start_ - setpoint).dot(axis));
   Step step;
   awaits_command_ = false;
+  if (state == InjectionState::kHold) holdCell(step);
   if (state == InjectionState::kApproach) approach(monitor, dt, step);
   if (state == InjectionState::kContact) contact(monitor, step);
   if (state == InjectionState::kIndent) indent(monitor, dt, step);
@@ -119,10 +142,15 @@ InjectionRun::Step InjectionRun::step(InjectionState state, const NeedleMonitor&
   if (state == InjectionState::kPunctured) through(monitor, dt, step);
   if (state == InjectionState::kInject) inject(injector, dt, step);
   if (state == InjectionState::kWithdraw) retract(dt, step);
+  if (state == InjectionState::kRelease) releaseCell(step);
   step.target = start_ - travel_ * axis;
-  if (step.event || step.stop) return step;
-  step.reason = timeGuard(guards_, toText(state), state_time_);
-  if (!step.reason.empty()) step.stop = InjectionOutcome::kGuard;
+  if (!step.stop && needsHold(state) && holding_ && step.event != InjectionEvent::kWithdraw)
+    step.reason = holding_->loss();
+  if (!step.stop && !step.event && step.reason.empty() && !needleWaits(state))
+    step.reason = timeGuard(guards_, toText(state), state_time_);
+  if (step.stop || step.reason.empty() || step.event == InjectionEvent::kOut) return step;
+  step.stop = InjectionOutcome::kGuard;
+  if (step.event && begins(*step.event)) step.event.reset();
   return step;
 }
 
@@ -320,7 +348,33 @@ void InjectionRun::inject(const std::optional<InjectorReport>& injector, double 
 void InjectionRun::retract(double dt, Step& step) {
   travel_ = std::max(0.0, travel_ - std::min(config_.retract_speed, speed_limit_) * dt);
   if (travel_ > 0) return;
+  const bool releases = active_ && goal_.holding.release && holding_ && !released_ && isDone(outcome_);
+  step.event = releases ? InjectionEvent::kRelease : InjectionEvent::kOut;
+  if (releases) return;
+  if (goal_.holding.release && !released_) reason_ += (reason_.empty() ? "" : "; ") + std::string(kStillHeld);
+  end(outcome_, reason_);
+}
+
+void InjectionRun::holdCell(Step& step) {
+  const std::string& failure = holding_->failure().empty() ? holding_->loss() : holding_->failure();
+  const bool taken = holding_->phase() == Holding::Phase::kHeld;
+  if (holding_->phase() == Holding::Phase::kFailed || (taken && !failure.empty())) {
+    step.event = InjectionEvent::kOut;  // the needle has not moved
+    end(InjectionOutcome::kNotHeld, failure);
+  } else if (taken && mayProceed(InjectionEvent::kStart)) {
+    step.event = InjectionEvent::kStart;
+  }
+}
+
+void InjectionRun::releaseCell(Step& step) {
+  if (!released_) {
+    released_ = mayProceed(InjectionEvent::kRelease);
+    step.releases = released_;
+    return;
+  }
+  if (holding_->phase() == Holding::Phase::kReleasing) return;
   step.event = InjectionEvent::kOut;
+  if (reason_.empty()) reason_ = holding_->failure();
   end(outcome_, reason_);
 }
 

@@ -8,6 +8,7 @@
 #include "base/config_reader.h"
 #include "operation/control/expected_puncture.h"
 #include "operation/control/guards.h"
+#include "operation/control/holding.h"
 #include "operation/control/injection_goal.h"
 #include "operation/control/injection_state.h"
 #include "operation/control/injector_wait.h"
@@ -39,8 +40,9 @@ struct InjectionMotionConfig {
   static InjectionMotionConfig read(ConfigReader& reader);
 };
 
-/// One injection along the pipette's axis without a hand: approach until contact, confirm it,
-/// indent until the puncture, or to a dent in which suction breaks the membrane, inject, withdraw. Each step returns
+/// One injection along the pipette's axis without a hand: wait for the holding pipette to take the cell, approach until
+/// contact, confirm it, indent until the puncture, or to a dent in which suction breaks the membrane, inject, withdraw,
+/// wait until the cell is let go. Each step returns
 /// the target of the tip and an event; the caller keeps the state.
 class InjectionRun {
  public:
@@ -49,6 +51,7 @@ class InjectionRun {
     std::optional<InjectionEvent> event;
     std::optional<InjectionOutcome> stop;  ///< hold, and end with this outcome
     std::string reason;                    ///< of `stop`
+    bool releases = false;                 ///< the holding pipette shall let the cell go
   };
 
   /// `automatic` = false: waits for confirm() in contact, at depth and after the injection.
@@ -56,14 +59,16 @@ class InjectionRun {
                const BreakDetectionConfig& breaks, bool automatic);
 
   void start(const InjectionGoal& goal, const Eigen::Vector3d& tip);
-  /// The operator's command for the next step (indent, inject). Returns empty, or the reason for
-  /// the refusal.
+  /// The operator's command for the next step (start, indent, aspirate, inject, release). Returns empty, or the reason
+  /// for the refusal.
   std::string confirm(InjectionEvent event, InjectionState state);
   void limitSpeed(double speed) { speed_limit_ = speed; }  ///< m/s
   /// Of the outermost membrane; empty: nothing is expected. Call before each step.
   void expect(const std::optional<ExpectedPuncture>& expected) { expected_ = expected; }
   /// The interface in the needle's bore; empty: no image shows it. Call before each step.
   void see(const std::optional<InterfaceReading>& interface) { interface_ = interface; }
+  /// What the holding pipette does. Call before each step.
+  void see(const Holding& holding) { holding_ = &holding; }
   /// After a rest: a stab starts slowly again, and suction from nothing. A break that is being confirmed is confirmed
   /// first, because the membrane may be open.
   void restart() {
@@ -101,6 +106,8 @@ class InjectionRun {
   void through(const NeedleMonitor& monitor, double dt, Step& step);
   void inject(const std::optional<InjectorReport>& injector, double dt, Step& step);
   void retract(double dt, Step& step);
+  void holdCell(Step& step);
+  void releaseCell(Step& step);
   std::optional<ExpectedPuncture> expected() const;  ///< of the next membrane
   std::string unexpected(const NeedleMonitor& monitor) const;
   double stabSpeed(const NeedleMonitor& monitor, double dt) const;
@@ -116,6 +123,7 @@ class InjectionRun {
   bool automatic_;
   std::optional<ExpectedPuncture> expected_;
   std::optional<InterfaceReading> interface_;
+  const Holding* holding_ = nullptr;  ///< null: there is no holder; then no state waits for it
   InjectionGoal goal_;
   InjectionResult result_;
   bool active_ = false, awaits_command_ = false;
@@ -133,6 +141,7 @@ class InjectionRun {
   InjectionOutcome outcome_ = InjectionOutcome::kNone;  ///< of the completed steps; the result's when the needle is out
   std::string reason_;
   bool injected_ = false;
+  bool released_ = false;              ///< the cell, by the holding pipette
   std::optional<SuctionRun> suction_;  ///< under way
   double dent_force_ = 0;              ///< N, before it
   bool drew_ = false;                  ///< the last membrane has withstood it

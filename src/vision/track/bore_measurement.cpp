@@ -3,7 +3,7 @@
 namespace microinjection {
 
 void measureBores(const Frame& frame, ContrastMode mode, SpecimenView& view) {
-  view.hold = cellHold(view.cell, view.holding);
+  view.hold = detectHold(view.cell, view.holding);
   view.column = findColumn(frame, view.injection);
   view.tongue = BoreBorder();
   view.tongue.finding = Finding::notFound("no cell was found");

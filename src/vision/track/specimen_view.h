@@ -5,7 +5,7 @@
 #include "vision/layers/cell_detector.h"
 #include "vision/pipette/bore_border.h"
 #include "vision/pipette/pipette_detector.h"
-#include "vision/track/cell_hold.h"
+#include "vision/track/hold_detection.h"
 #include "vision/track/overlay.h"
 
 namespace microinjection {
@@ -25,7 +25,7 @@ struct SpecimenView {
   PipetteDetection injection, holding;
   Dimple indentation;
   BoreBorder column, tongue;  ///< in the injection and in the holding pipette
-  CellHold hold;
+  HoldDetection hold;
 
   OverlayContent overlay() const { return {&cell, &holding, &injection, &indentation, &column, &tongue}; }
 };

@@ -49,7 +49,7 @@ class Scale {
     length(border.deviation);
     place(border.place);
   }
-  void hold(CellHold& hold) const {
+  void hold(HoldDetection& hold) const {
     length(hold.gap);
     length(hold.deviation);
   }

@@ -11,19 +11,19 @@ namespace microinjection {
 namespace {
 
 TEST(CellMotionConfig, ReadsItsKeys) {
-  ConfigReader reader(YAML::Load("{radius: 50e-6, viscosity: 1e-3, friction: {lip: 0.5, needle: 0}}"), "cell.yaml");
+  ConfigReader reader(YAML::Load("{viscosity: 1e-3, friction: {lip: 0.5, needle: 0}}"), "cell.yaml");
   CellMotionConfig config;
   config.read(reader);
   reader.finish();
-  EXPECT_EQ(config.radius, 50e-6);
+  EXPECT_EQ(config.radius, CellMotionConfig().radius);
   EXPECT_EQ(config.friction.lip, 0.5);
   EXPECT_EQ(config.friction.needle, 0);
   EXPECT_EQ(config.friction.dish, CellMotionConfig().friction.dish);
-  EXPECT_NEAR(config.drag(), 6 * M_PI * 1e-3 * 50e-6, 1e-18);
+  EXPECT_NEAR(config.drag(), 6 * M_PI * 1e-3 * 40e-6, 1e-18);
 }
 
 TEST(CellMotionConfig, RefusesUnknownKeys) {
-  ConfigReader reader(YAML::Load("{radius: 50e-6, friction: {lips: 0.5}}"), "cell.yaml");
+  ConfigReader reader(YAML::Load("{friction: {lips: 0.5}}"), "cell.yaml");
   CellMotionConfig config;
   config.read(reader);
   EXPECT_THROW(reader.finish(), ConfigError);

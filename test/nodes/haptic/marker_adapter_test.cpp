@@ -215,7 +215,7 @@ TEST_F(MarkerTest, AnotherFrameAndWhatIsNoNumberEndTheDrag) {
     EXPECT_FALSE(present());
     EXPECT_EQ(device_.hand(), start);
   }
-  tell(Feedback::MENU_SELECT, kHandle, "world", 4);
+  tell(Feedback::MENU_SELECT, kHandle, "world", 6);
   device_.run(0.02);
   EXPECT_EQ(device_.commands(), std::vector<std::string>{"disable"});
 }
@@ -223,10 +223,11 @@ TEST_F(MarkerTest, AnotherFrameAndWhatIsNoNumberEndTheDrag) {
 TEST_F(MarkerTest, TheMenuSendsCommands) {
   std::vector<std::string> titles;
   for (const auto& entry : marker().menu_entries) titles.push_back(entry.title);
-  EXPECT_EQ(titles, std::vector<std::string>({"Enable", "Inject", "Withdraw (home)", "Disable"}));
-  for (const std::uint32_t entry : {1, 2, 3}) tell(Feedback::MENU_SELECT, kHandle, "viz/world", entry);
+  EXPECT_EQ(titles, std::vector<std::string>(
+                        {"Enable", "Hold the cell", "Inject", "Withdraw (home)", "Release the cell", "Disable"}));
+  for (const std::uint32_t entry : {1, 2, 3, 4, 5}) tell(Feedback::MENU_SELECT, kHandle, "viz/world", entry);
   device_.run(0.02);
-  EXPECT_EQ(device_.commands(), std::vector<std::string>({"enable", "inject", "home"}));
+  EXPECT_EQ(device_.commands(), std::vector<std::string>({"enable", "hold", "inject", "home", "release"}));
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "cell_microinjection/BoreState.h"
-#include "cell_microinjection/HeldTongue.h"
+#include "cell_microinjection/CellHold.h"
 #include "cell_microinjection/InterfacePosition.h"
 #include "placed_specimen.h"
 
@@ -23,7 +25,7 @@ class BoresTest : public testing::Test {
     session_.world().hear<cell_microinjection::InterfacePosition>("/needle/interface");
     TestNode& node = session_.addTestNode("bores", 0.02);
     node.repeat<cell_microinjection::BoreState>("/cell/bore", [this] { return bore_; });
-    node.repeat<cell_microinjection::HeldTongue>("/cell/held_tongue", [this] { return tongue_; });
+    node.repeat<cell_microinjection::CellHold>("/cell/hold", [this] { return hold_; });
   }
 
   void drawIntoNeedle(double length) {
@@ -56,7 +58,7 @@ class BoresTest : public testing::Test {
   VirtualSession session_{{"camera.source:=sim", "hand.device:=none"}};
   PlacedSpecimen specimen_{session_, kHeldRadius, {20e-6, 0, 60e-6}};
   std::optional<cell_microinjection::BoreState> bore_;
-  std::optional<cell_microinjection::HeldTongue> tongue_;
+  std::optional<cell_microinjection::CellHold> hold_;
 };
 
 TEST_F(BoresTest, TheInterfaceInTheNeedleIsPublishedAtTheImagesStamp) {
@@ -78,13 +80,15 @@ TEST_F(BoresTest, TheInterfaceInTheNeedleIsPublishedAtTheImagesStamp) {
 }
 
 TEST_F(BoresTest, TheTongueOfAHeldCellIsMeasured) {
-  tongue_.emplace();
-  tongue_->length = 9e-6;
+  hold_.emplace();
+  hold_->orientation.w = 1;
+  hold_->tongue = 9e-6;
+  hold_->limit = std::numeric_limits<double>::infinity();
   const VisionState state = seen();
   EXPECT_TRUE(state.hold.held) << state.hold.reason << ", gap " << state.hold.gap << "; cell: " << state.cell.reason
                                << "; mouth: " << state.holding_pipette.reason;
   ASSERT_NE(state.holder_bore.verdict, cell_microinjection::BoreInImage::NOT_FOUND) << state.holder_bore.reason;
-  EXPECT_NEAR(state.holder_bore.length * camera_.pixel, tongue_->length, 0.4e-6);
+  EXPECT_NEAR(state.holder_bore.length * camera_.pixel, hold_->tongue, 0.4e-6);
 }
 
 TEST_F(BoresTest, ACellThatLeftTheMouthIsDrawnElsewhereAndSeenLost) {

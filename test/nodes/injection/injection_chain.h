@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <set>
 #include <string>
 #include <utility>
@@ -109,6 +110,11 @@ class InjectionChain {
                                     motion + "stab_speed:=20e-6",
                                     motion + "approach_speed:=40e-6",
                                     motion + "retract_speed:=80e-6"};
+    for (const std::string& argument : overrides) {
+      const std::string key = argument.substr(0, argument.find(":=") + 2);
+      all.erase(std::remove_if(all.begin(), all.end(), [&](const auto& usual) { return usual.rfind(key, 0) == 0; }),
+                all.end());
+    }
     all.insert(all.end(), overrides.begin(), overrides.end());
     return all;
   }

@@ -69,6 +69,8 @@ const std::vector<Bad> kBad = {
     {"cell_simulator", "{model: surrogate, scene: " + kRounded + "}", {"model = surrogate", "prepare --scene"}},
     {"cell_simulator", "{model: guessed}", {"model = guessed", "auto, surrogate, live, explicit"}},
     {"cell_simulator", "{rate: 1e6}", {"rate = 1e6", "[50, 5000]"}},
+    {"cell_simulator", "{holding: {friction: {lip: -1}}}", {"holding/friction/lip = -1", "[0, inf)"}},
+    {"cell_simulator", "{holding: {radius: 1e-5}}", {"holding/radius"}},
     {"cell_simulator", "{extrapolation_limit: 0.0}", {"extrapolation_limit = 0", "(0, inf)"}},
     {"display", "{rate: -1}", {"rate = -1"}},
     {"focus", "{step: 0}", {"step = 0"}},

@@ -27,6 +27,8 @@ SessionView viewOf(const InjectionController& controller, const InjectionControl
   view.notice = controller.notice();
   view.settings = {config.mode,
                    config.goal.pulse.duration > 0,
+                   config.holder,
+                   config.goal.holding.suction > 0,
                    config.goal.break_by != BreakBy::kForce,
                    config.guards.force_limit,
                    config.guards.depth_limit,
@@ -37,8 +39,11 @@ SessionView viewOf(const InjectionController& controller, const InjectionControl
 /// The console beside the real controller, in front of a cell of springs.
 class ConsoleBesideController : public testing::Test {
  protected:
-  void begin(const std::string& mode) {
+  void begin(const std::string& mode, double holding_suction = 0) {
     config_ = {};
+    config_.holder = holding_suction > 0;
+    config_.goal.holding.suction = holding_suction;
+    config_.goal.holding.release = config_.holder;
     config_.mode = mode;
     config_.goal.depth = 30e-6;
     config_.goal.pulse.duration = 0.3;
@@ -119,6 +124,32 @@ TEST_F(ConsoleBesideController, AgreesInAWholeInjectionByButtons) {
   EXPECT_EQ(states_.size(), 7U);
   EXPECT_GT(refused_, 100);
   EXPECT_GT(compared_ - refused_, 100);
+}
+
+TEST_F(ConsoleBesideController, AgreesWhereAHolderTakesTheCell) {
+  begin("semi_automatic", 1500);
+  EXPECT_EQ(press(ConsoleCommand::kHold), "");
+  ASSERT_TRUE(waitsIn(InjectionState::kHold));
+  EXPECT_EQ(press(ConsoleCommand::kApproach), "");
+  ASSERT_TRUE(waitsIn(InjectionState::kContact));
+  EXPECT_EQ(press(ConsoleCommand::kIndent), "");
+  ASSERT_TRUE(waitsIn(InjectionState::kPunctured));
+  EXPECT_EQ(press(ConsoleCommand::kInject), "");
+  ASSERT_TRUE(reaches(InjectionState::kInject));
+  ASSERT_TRUE(waitsIn(InjectionState::kPunctured));
+  EXPECT_EQ(press(ConsoleCommand::kWithdraw), "");
+  ASSERT_TRUE(waitsIn(InjectionState::kRelease));
+  EXPECT_EQ(press(ConsoleCommand::kRelease), "");
+  ASSERT_TRUE(reaches(InjectionState::kIdle));
+  steps(100);
+  EXPECT_EQ(press(ConsoleCommand::kRelease), "") << "also without an injection";
+  begin("automatic", 1500);
+  ASSERT_TRUE(reaches(InjectionState::kRelease));
+  ASSERT_TRUE(reaches(InjectionState::kIdle));
+  begin("manual", 1500);
+  EXPECT_EQ(press(ConsoleCommand::kHold), "");
+  steps(600);
+  EXPECT_EQ(press(ConsoleCommand::kRelease), "");
 }
 
 TEST_F(ConsoleBesideController, AgreesInAnAutomaticInjection) {

@@ -31,6 +31,18 @@ TEST(StepStrip, LightsThePresentStepAndRemembersThePassedOnes) {
   EXPECT_EQ(strip.marks(), idle);
 }
 
+TEST(StepStrip, NamesTheFirstAndTheLastStepWhileTheCellIsTakenAndLetGo) {
+  StepStrip strip;
+  strip.update(InjectionState::kHold);
+  EXPECT_EQ(strip.marks()[0], Mark::kPresent);
+  EXPECT_STREQ(strip.text(0), "hold");
+  strip.update(InjectionState::kApproach);
+  EXPECT_STREQ(strip.text(0), "idle");
+  strip.update(InjectionState::kRelease);
+  EXPECT_EQ(strip.marks()[7], Mark::kPresent);
+  EXPECT_STREQ(strip.text(7), "release");
+}
+
 TEST(StepStrip, LightsNothingInFaultOrWithoutAState) {
   StepStrip strip;
   strip.update(InjectionState::kApproach);

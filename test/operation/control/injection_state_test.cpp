@@ -11,17 +11,36 @@ namespace {
 
 // Written once more, by name: each change of the table has to be made twice, on purpose.
 const std::map<std::pair<std::string, std::string>, std::string> kExpected = {
-    {{"idle", "start"}, "approach"},          {{"approach", "touch"}, "contact"},
-    {{"approach", "withdraw"}, "withdraw"},   {{"contact", "lost"}, "approach"},
-    {{"contact", "indent"}, "indent"},        {{"contact", "puncture"}, "punctured"},
-    {{"contact", "withdraw"}, "withdraw"},    {{"indent", "puncture"}, "punctured"},
-    {{"indent", "withdraw"}, "withdraw"},     {{"punctured", "indent"}, "indent"},
-    {{"punctured", "puncture"}, "punctured"}, {{"punctured", "inject"}, "inject"},
-    {{"punctured", "withdraw"}, "withdraw"},  {{"inject", "injected"}, "punctured"},
-    {{"inject", "withdraw"}, "withdraw"},     {{"withdraw", "touch"}, "contact"},
-    {{"withdraw", "withdraw"}, "withdraw"},   {{"withdraw", "out"}, "idle"},
-    {{"indent", "aspirate"}, "aspirate"},     {{"aspirate", "puncture"}, "punctured"},
-    {{"aspirate", "indent"}, "indent"},       {{"aspirate", "withdraw"}, "withdraw"},
+    {{"idle", "start"}, "approach"},
+    {{"approach", "touch"}, "contact"},
+    {{"approach", "withdraw"}, "withdraw"},
+    {{"contact", "lost"}, "approach"},
+    {{"contact", "indent"}, "indent"},
+    {{"contact", "puncture"}, "punctured"},
+    {{"contact", "withdraw"}, "withdraw"},
+    {{"indent", "puncture"}, "punctured"},
+    {{"indent", "withdraw"}, "withdraw"},
+    {{"punctured", "indent"}, "indent"},
+    {{"punctured", "puncture"}, "punctured"},
+    {{"punctured", "inject"}, "inject"},
+    {{"punctured", "withdraw"}, "withdraw"},
+    {{"inject", "injected"}, "punctured"},
+    {{"inject", "withdraw"}, "withdraw"},
+    {{"withdraw", "touch"}, "contact"},
+    {{"withdraw", "withdraw"}, "withdraw"},
+    {{"withdraw", "out"}, "idle"},
+    {{"indent", "aspirate"}, "aspirate"},
+    {{"aspirate", "puncture"}, "punctured"},
+    {{"aspirate", "indent"}, "indent"},
+    {{"aspirate", "withdraw"}, "withdraw"},
+    {{"idle", "hold"}, "hold"},
+    {{"hold", "start"}, "approach"},
+    {{"hold", "withdraw"}, "withdraw"},
+    {{"idle", "release"}, "release"},
+    {{"withdraw", "release"}, "release"},
+    {{"release", "out"}, "idle"},
+    {{"hold", "out"}, "idle"},
+    {{"release", "withdraw"}, "withdraw"},
 };
 
 const std::pair<InjectionEvent, const char*> kEvents[] = {
@@ -31,6 +50,7 @@ const std::pair<InjectionEvent, const char*> kEvents[] = {
     {InjectionEvent::kInjected, "injected"}, {InjectionEvent::kWithdraw, "withdraw"},
     {InjectionEvent::kOut, "out"},           {InjectionEvent::kFail, "fail"},
     {InjectionEvent::kReset, "reset"},       {InjectionEvent::kAspirate, "aspirate"},
+    {InjectionEvent::kHold, "hold"},         {InjectionEvent::kRelease, "release"},
 };
 
 TEST(InjectionState, EachEventInEachState) {

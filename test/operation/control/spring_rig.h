@@ -27,6 +27,9 @@ struct SpringRig {
   bool injector_works = true;
   bool obeys = true;      ///< the injector changes a suction's pressure as it is told
   double full = 0.2e-15;  ///< m^3, of a pulse
+  // Of a holder: its line follows within 20 ms, and a cell is held from half of its suction on, until it is lost.
+  bool holder_tells = true, cell_is_there = true, somebody_sees = false, sticks = false;
+  double holder_pressure = 0;                                           ///< Pa, gauge, in the mouth
   bool needle_tells = true, force_tells = true, injector_tells = true;  ///< else nothing is known of it
 
   Eigen::Vector3d tip = Eigen::Vector3d(0, 0, 40e-6);
@@ -71,11 +74,22 @@ struct SpringRig {
     const bool draws = pressure < 0 && obeys;
     input.injector =
         InjectorReport{asked && volume < full, volume, volume >= full, "", draws || pressure > 0 ? pressure : 0, 0};
+    if (controller.holderCommand()) senseHolder(controller.holderCommand()->pressure);
     if (!needle_tells) input.needle.reset();
     if (!force_tells) input.force.reset();
     if (!injector_tells) input.injector.reset();
     deepest = std::max(deepest, depth());
     largest_force = std::max(largest_force, force);
+  }
+
+  void senseHolder(double wanted) {
+    holder_pressure += (1 - std::exp(-kStep / 20e-3)) * (wanted - holder_pressure);
+    const bool holds = cell_is_there && (sticks || holder_pressure < -50);
+    input.holder =
+        HolderReport{holds ? holder_pressure : 0, holder_pressure, holds ? 0 : 1e-11 * holder_pressure / 1e3};
+    input.cell_hold = HoldReport{holds, holds ? "held" : "lost"};
+    if (!holder_tells) input.holder.reset();
+    if (!somebody_sees) input.cell_hold.reset();
   }
 
   void move() {

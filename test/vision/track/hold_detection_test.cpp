@@ -1,4 +1,4 @@
-#include "vision/track/cell_hold.h"
+#include "vision/track/hold_detection.h"
 
 #include <gtest/gtest.h>
 
@@ -24,29 +24,29 @@ PipetteDetection mouthAt(const cv::Point2d& place) {
   return pipette;
 }
 
-TEST(CellHold, IsWhetherTheOutlineReachesTheMouth) {
+TEST(HoldDetection, IsWhetherTheOutlineReachesTheMouth) {
   const CellDetection cell = cellAt({300, 200}, 100);
-  const CellHold held = cellHold(cell, mouthAt({300, 290}));
+  const HoldDetection held = detectHold(cell, mouthAt({300, 290}));
   EXPECT_TRUE(held.finding.isFound());
   EXPECT_TRUE(held.held);
   EXPECT_NEAR(held.gap, -10, 1e-6);
-  const CellHold lost = cellHold(cell, mouthAt({300, 320}));
+  const HoldDetection lost = detectHold(cell, mouthAt({300, 320}));
   EXPECT_TRUE(lost.finding.isFound());
   EXPECT_FALSE(lost.held);
   EXPECT_NEAR(lost.gap, 20, 1e-6);
-  EXPECT_FALSE(cellHold(cell, mouthAt({300, 304.1})).finding.isFound());  // too near to tell
-  const CellHold aside = cellHold(cell, mouthAt({450, 250}));             // its axis misses the cell
+  EXPECT_FALSE(detectHold(cell, mouthAt({300, 304.1})).finding.isFound());  // too near to tell
+  const HoldDetection aside = detectHold(cell, mouthAt({450, 250}));        // its axis misses the cell
   EXPECT_TRUE(aside.finding.isFound());
   EXPECT_FALSE(aside.held);
   EXPECT_GT(aside.gap, 50);
 }
 
-TEST(CellHold, IsNotKnownOfWhatIsNotSeen) {
-  EXPECT_EQ(cellHold(CellDetection(), mouthAt({300, 290})).finding.verdict, Verdict::kNotFound);
-  EXPECT_EQ(cellHold(cellAt({300, 200}, 100), PipetteDetection()).finding.verdict, Verdict::kNotFound);
+TEST(HoldDetection, IsNotKnownOfWhatIsNotSeen) {
+  EXPECT_EQ(detectHold(CellDetection(), mouthAt({300, 290})).finding.verdict, Verdict::kNotFound);
+  EXPECT_EQ(detectHold(cellAt({300, 200}, 100), PipetteDetection()).finding.verdict, Verdict::kNotFound);
   CellDetection doubted = cellAt({300, 200}, 100);
   doubted.size = Finding::uncertain("it is bent");
-  EXPECT_EQ(cellHold(doubted, mouthAt({300, 320})).finding.reason, "it is bent");
+  EXPECT_EQ(detectHold(doubted, mouthAt({300, 320})).finding.reason, "it is bent");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "vision/track/cell_hold.h"
+#include "vision/track/hold_detection.h"
 
 #include <cmath>
 
@@ -10,8 +10,8 @@ constexpr double kIntervals = 3;     // standard deviations of the gap
 
 }  // namespace
 
-CellHold cellHold(const CellDetection& cell, const PipetteDetection& holding) {
-  CellHold hold;
+HoldDetection detectHold(const CellDetection& cell, const PipetteDetection& holding) {
+  HoldDetection hold;
   hold.finding = Finding::notFound(cell.finding.hasValues() ? "no mouth was found" : "no cell was found");
   if (!cell.finding.hasValues() || !holding.finding.hasValues()) return hold;
   const CellBorder& outer = cell.outer();
