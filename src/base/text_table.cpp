@@ -146,7 +146,7 @@ std::optional<std::string> commentIn(const std::string& line) {
 
 class TableReader {
  public:
-  explicit TableReader(const std::string& path) {
+  TableReader(const std::string& path, int least_numbers) : least_numbers_(least_numbers) {
     table_.path = path;
     lines_ = readTextLines(path, table_.notes);
   }
@@ -176,7 +176,7 @@ class TableReader {
     }
     return count;
   }
-  static bool isRow(const Cells& cells) { return countIn(cells).numbers >= 2; }
+  bool isRow(const Cells& cells) const { return countIn(cells).numbers >= least_numbers_; }
 
   /// The separator and the number of cells with which there are the most numbers.
   void findRows() {
@@ -195,8 +195,9 @@ class TableReader {
         ++looked;
         const Cells cells = split(lines_[i], separator);
         const Count found = countIn(cells);
-        if (found.numbers < 2) continue;
-        const int count = counts[separator][cells.size()] += std::max(0, found.numbers - found.texts);
+        if (found.numbers < least_numbers_) continue;
+        const int least = least_numbers_ > 1 ? 0 : 1;  // texts are meant then
+        const int count = counts[separator][cells.size()] += std::max(least, found.numbers - found.texts);
         if (count <= most) continue;
         most = count;
         width_ = cells.size();
@@ -254,8 +255,9 @@ class TableReader {
   }
   std::string notATable() const {
     if (lines_.empty()) return "the file is empty";
-    return "'" + shown(lines_[firstText()]) +
-           "': the file has no row with two numbers; it must be a table of numbers between commas, semicolons, tabs or "
+    return "'" + shown(lines_[firstText()]) + "': the file has no row with " +
+           (least_numbers_ > 1 ? "two numbers" : "a number") +
+           "; it must be a table of numbers between commas, semicolons, tabs or "
            "blanks";
   }
   static std::string shown(const std::string& text) { return text.size() > 60 ? text.substr(0, 57) + "..." : text; }
@@ -473,6 +475,7 @@ class TableReader {
     }
   }
 
+  int least_numbers_;
   TextTable table_;
   std::vector<std::string> lines_;
   bool said_separator_ = false;
@@ -489,6 +492,6 @@ std::vector<std::string> TextTable::titles() const {
   return titles;
 }
 
-TextTable readTextTable(const std::string& path) { return TableReader(path).read(); }
+TextTable readTextTable(const std::string& path, int least_numbers) { return TableReader(path, least_numbers).read(); }
 
 }  // namespace microinjection

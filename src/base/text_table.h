@@ -36,7 +36,7 @@ struct TextTable {
 /// and comments (#, %, //) before the titles, titles in the last comment or none; a line of units; times of the day and
 /// dates; a line sep=X. A last line that was cut off is left out. Throws ConfigError that names file, line, what was
 /// found and what is allowed: for rows with another number of cells, two decimal signs, NUL, and a file without a
-/// table.
-TextTable readTextTable(const std::string& path);
+/// table. `least_numbers`: by which a row is told from a text; 1 for a table of names with one number each.
+TextTable readTextTable(const std::string& path, int least_numbers = 2);
 
 }  // namespace microinjection

@@ -15,6 +15,7 @@
 #include "base/errors.h"
 #include "base/plausible.h"
 #include "base/standard_output.h"
+#include "base/text_table.h"
 #include "cell/identification/combined_modulus.h"
 #include "cell/identification/contact_guess.h"
 #include "cell/identification/family_law.h"
@@ -24,6 +25,7 @@
 #include "cell/identification/tongue_identification.h"
 #include "commands/identify_arguments.h"
 #include "commands/scene_law.h"
+#include "commands/tongue_images.h"
 
 namespace microinjection {
 namespace {
@@ -177,7 +179,9 @@ void widen(Identification& force) {
 }
 
 Identification fitTongue(const IdentifyArguments& arguments, const Scene& scene) {
-  const TongueRecord record = readTongueRecord(arguments.tongue, columnsOf(arguments, true));
+  const std::map<std::string, std::string> columns = columnsOf(arguments, true);
+  const TongueRecord record = arguments.vision ? measureTongues(arguments.tongue, columns, *arguments.vision)
+                                               : readTongueRecord(readTextTable(arguments.tongue), columns);
   for (const std::string& note : record.notes) std::printf("%s: %s\n", arguments.tongue.c_str(), note.c_str());
   Identification found = identifyTongue(record, scene, TongueShape(scene));
   printIdentification("tongue", found);

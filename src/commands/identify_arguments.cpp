@@ -21,7 +21,7 @@ constexpr char kHelp[] = R"help(identify: which cell is it? Fits a recorded forc
 
 Usage: identify --record FILE [--scene FILE] [--model M1,M2,...] [--out SCENE] [...]
        identify --point DEPTH,FORCE --reading-error E --scene FILE --model solution [...]
-       identify --tongue FILE --scene FILE [--out SCENE] [...]
+       identify --tongue FILE [--pixel-size M] --scene FILE [--out SCENE] [...]
        identify --record FILE --tongue FILE --scene FILE [--out SCENE] [...]
 
 The record is a table: a line of column names, then numbers. Names and units are found by themselves: time_s,
@@ -30,6 +30,8 @@ drift, outliers and missing rows may be as they come. Only the way in is used.
 
 Tongues are a table of pressures in the holding pipette and the lengths that they have drawn in, as images show them from
 any fixed place: "pressure (kPa)", tongue_um, ... ; the scene has the mouth (holding_pipette/mouth). It takes seconds.
+With --pixel-size the table names an image instead of each length, in the column `image`: a path, relative to the table.
+The tongues are then measured in the images, from the mouth's end. Images in which none is sure are named and left out.
 With a record of the same cell the two moduli are joined (model `both`, which is the first one then).
 
 Models (each is fitted, and compared with the others):
@@ -118,7 +120,8 @@ void requireFitTongue(const IdentifyArguments& arguments, const boost::program_o
   if (!arguments.residuals.empty()) throw ConfigError("--residuals: must be left out with --tongue");
   if (!arguments.record.empty()) return;
   for (const auto& [name, value] : values) {
-    const bool used = name == "tongue" || name == "scene" || name == "out" || name == "csv" || name == "column";
+    const bool used = name == "tongue" || name == "scene" || name == "out" || name == "csv" || name == "column" ||
+                      name == "pixel-size" || name == "vision";
     if (!value.defaulted() && !used && !value.empty())
       throw ConfigError("--" + name + ": must be left out with --tongue");
   }
@@ -132,9 +135,9 @@ bool isOfScene(const std::string& model) { return model == "family" || model == 
 std::optional<IdentifyArguments> parseIdentifyArguments(int argc, char** argv) {
   namespace po = boost::program_options;
   IdentifyArguments arguments;
-  std::string models, free, point, drift = "auto";
+  std::string models, free, point, vision, drift = "auto";
   std::vector<std::string> columns;
-  double poisson_ratio = -1, reading_error = 0, depth_error = 0;
+  double poisson_ratio = -1, reading_error = 0, depth_error = 0, pixel_size = 0;
   bool quick = false;
   po::options_description options(kHelp);
   auto add = options.add_options();
@@ -142,6 +145,9 @@ std::optional<IdentifyArguments> parseIdentifyArguments(int argc, char** argv) {
   add("record", po::value(&arguments.record), "file with the record");
   add("point", po::value(&point), "DEPTH,FORCE: one published point instead of a record, m, N; the contact is at 0");
   add("tongue", po::value(&arguments.tongue), "file of tongue lengths by suction, instead of a record or beside it");
+  add("pixel-size", po::value(&pixel_size),
+      "m of the specimen for a pixel: the table of --tongue names images, in which the tongues are measured");
+  add("vision", po::value(&vision), "parameters of the search in these images, as config/vision.yaml");
   add("reading-error", po::value(&reading_error), "of the point's force, relative: half of its interval of 95 %");
   add("depth-error", po::value(&depth_error), "m, same, of the point's depth");
   add("scene", po::value(&arguments.scene), "file with the cell's sizes and the tip, SI units");
@@ -177,6 +183,8 @@ std::optional<IdentifyArguments> parseIdentifyArguments(int argc, char** argv) {
         "--record, --tongue or both, or else --point: one of them must be given, the file with the record");
   }
   if (!arguments.tongue.empty()) requireFitTongue(arguments, values);
+  if (pixel_size != 0 && arguments.tongue.empty()) throw ConfigError("--pixel-size: needs --tongue");
+  if (!vision.empty() && pixel_size == 0) throw ConfigError("--vision: needs --pixel-size");
   if (!point.empty()) {
     if (values.count("reading-error") == 0) throw ConfigError("--point: needs --reading-error");
     if (!arguments.residuals.empty()) throw ConfigError("--residuals: needs --record");
@@ -184,6 +192,7 @@ std::optional<IdentifyArguments> parseIdentifyArguments(int argc, char** argv) {
   }
   const std::vector<std::pair<std::string, PlausibleRange>> ranges = {{"tip-radius", plausible::kTipRadius},
                                                                       {"half-angle", plausible::kConeAngle},
+                                                                      {"pixel-size", plausible::kPixelSize},
                                                                       {"spring-constant", plausible::kStiffness}};
   for (const auto& [option, range] : ranges) {
     if (values.count(option) != 0) requirePlausible(range, option, values[option].as<double>());
@@ -200,12 +209,17 @@ std::optional<IdentifyArguments> parseIdentifyArguments(int argc, char** argv) {
   OutputFiles()
       .reads("--record", arguments.record)
       .reads("--tongue", arguments.tongue)
+      .reads("--vision", vision)
       .reads("--scene", arguments.scene)
       .reads("--families", arguments.families)
       .writes("--out", arguments.out)
       .writes("--residuals", arguments.residuals)
       .writes("--csv", arguments.csv)
       .check();
+  if (pixel_size > 0) {
+    arguments.vision = vision.empty() ? VisionConfig::standard() : VisionConfig::load(vision);
+    arguments.vision->pixel_size = pixel_size;
+  }
   arguments.geometry.poisson_ratio = poisson_ratio;
   arguments.models = split(models.empty() ? (arguments.scene.empty() ? "hertz" : "family,hertz") : models);
   arguments.free = split(free);

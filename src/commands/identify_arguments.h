@@ -8,6 +8,7 @@
 #include "cell/identification/formula_law.h"
 #include "cell/identification/identification.h"
 #include "cell/identification/point_identification.h"
+#include "vision/measurement/vision_config.h"
 
 namespace microinjection {
 
@@ -15,6 +16,7 @@ namespace microinjection {
 struct IdentifyArguments {
   std::string record;  ///< file; empty with a point and with tongues
   std::string tongue;  ///< file of tongues by suction, alone or beside the record of the same cell; empty: none
+  std::optional<VisionConfig> vision;  ///< with the pixel size, of the images that `tongue` names; none: it has lengths
   std::optional<MeasuredPoint> point;
   std::string scene;                ///< file; empty: none
   std::vector<std::string> models;  ///< of the list in the help

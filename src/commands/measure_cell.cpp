@@ -68,12 +68,6 @@ is not found or uncertain, or the scene has a zona and the image shows none: no 
 
 )";
 
-void readVision(const std::string& path, VisionConfig& vision) {
-  ConfigReader reader = ConfigReader::ofFile(path);
-  vision = VisionConfig::read(reader);
-  reader.finish();
-}
-
 /// Returns nothing after printing the help. Throws ConfigError on bad usage.
 std::optional<MeasureCellArguments> parseMeasureCellArguments(int argc, char** argv) {
   namespace po = boost::program_options;
@@ -96,7 +90,7 @@ std::optional<MeasureCellArguments> parseMeasureCellArguments(int argc, char** a
       "folder of the families, such as config/families");
   po::variables_map given;
   if (!readCommandLine(wordsOf(argc, argv), options, kHelp, given, "input")) return std::nullopt;
-  if (!config.empty()) readVision(config, arguments.vision);
+  if (!config.empty()) arguments.vision = VisionConfig::load(config);
   if (!calibration.empty()) arguments.vision.calibration = calibration;
   ConfigErrors errors;
   errors.require(!arguments.input.empty(), "INPUT", "", "", "an image, a folder or a video");

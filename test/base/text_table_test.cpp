@@ -269,5 +269,16 @@ TEST_F(TextTableTest, WhatCannotBeReadIsNamedWithItsLine) {
   EXPECT_THROW(readTextTable(testing::TempDir() + "is_not_there"), ConfigError);
 }
 
+TEST_F(TextTableTest, NamesWithOneNumberEachAreATableWhereTheyAreMeant) {
+  const std::string text = "suction (kPa),image\n0.3,cell 1 of 3.png\n0.6,b.png\n,c.png\n";
+  EXPECT_NE(refusal(text).find("no row with two numbers"), std::string::npos);
+  std::ofstream(path_, std::ios::binary) << text;
+  const TextTable table = readTextTable(path_, 1);
+  ASSERT_EQ(table.titles(), Texts({"suction (kPa)", "image"}));
+  ASSERT_EQ(table.rows(), 3U);
+  EXPECT_EQ(table.columns[1].texts, Texts({"cell 1 of 3.png", "b.png", "c.png"}));
+  EXPECT_EQ(table.columns[0].values[1], 0.6);
+}
+
 }  // namespace
 }  // namespace microinjection

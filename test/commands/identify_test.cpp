@@ -1,14 +1,19 @@
 // The command as its users run it.
 
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
+#include <opencv2/imgcodecs.hpp>
 #include <random>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "commands/command_test.h"
+#include "vision/microscope/microscope.h"
+#include "vision/microscope/tongue_outline.h"
 
 namespace microinjection {
 namespace {
@@ -94,6 +99,71 @@ TEST_F(IdentifyCommand, TonguesHaveTheModulusOfTheSceneThatAspirateSolves) {
            {"--tongue tongues.csv --prony 1 --scene " + scene, "--prony: must be left out with --tongue"},
            {"--tongue tongues.csv --scene " + std::string(kCells) + "mouse_oocyte.yaml",
             "holding_pipette/mouth: is missing"}}) {
+    const Outcome refused = CommandTest::run(arguments);
+    EXPECT_EQ(refused.status, 2) << arguments;
+    EXPECT_NE(refused.err.find(told), std::string::npos) << arguments << '\n' << refused.err;
+  }
+}
+
+/// What the virtual microscope shows of a mouse's oocyte at the holding pipette of mouse_oocyte_held.yaml, with a
+/// tongue of this length (m).
+cv::Mat imageOfTongue(Microscope& microscope, double length, std::uint64_t seed) {
+  constexpr double kRadius = 28e-6, kZona = 7e-6, kGap = 1e-6;
+  HoldingPipette pipette;
+  pipette.inner_radius = 10e-6;
+  pipette.outer_radius = 41e-6;
+  pipette.mouth = std::sqrt(kRadius * kRadius - pipette.inner_radius * pipette.inner_radius) * pipette.axis;
+  CellScene cell = CellScene::round({0, 0}, kRadius, kZona, kGap);
+  drawIn({pipette.mouth, pipette.axis, pipette.inner_radius, length}, kZona, kGap, cell);
+  MicroscopeScene scene;
+  scene.cells.push_back(cell);
+  scene.holding = pipette;
+  return microscope.render(scene, 0, seed);
+}
+
+/// What `aspirate` solves, seen by the microscope, has the scene's modulus; what shows no tongue is named and left out.
+TEST_F(IdentifyCommand, TonguesAreMeasuredInImages) {
+  const std::string scene = std::string(kCells) + "mouse_oocyte_held.yaml";
+  const std::string aspirate = "cd " + directory_ + " && " MICROINJECTION_ASPIRATE " --scene " + scene +
+                               " --pressures=-1800,-2400,-3000,-3600,-4200,-4800,-5400,-6000 --tolerance 0.02 "
+                               "--csv solved.csv 2>/dev/null";
+  ASSERT_EQ(std::system(aspirate.c_str()), 0);
+  MicroscopeConfig config;
+  config.camera.pixel_size = 0.2e-6;
+  Microscope microscope(config);
+  std::filesystem::create_directories(directory_ + "images");
+  std::ofstream table(directory_ + "images/table.csv"), empty(directory_ + "images/empty.csv");
+  table << "pressure (Pa),image\n";
+  empty << "pressure (Pa),image\n-700,alone.png\n-800,alone.png\n";
+  std::istringstream solved(read(directory_ + "solved.csv"));
+  std::string line;
+  std::getline(solved, line);
+  for (int i = 1; std::getline(solved, line); ++i) {
+    double pressure = 0, length = 0;
+    ASSERT_EQ(std::sscanf(line.c_str(), "%lf,%lf", &pressure, &length), 2) << line;
+    const std::string name = "tongue " + std::to_string(i) + ".png";
+    ASSERT_TRUE(cv::imwrite(directory_ + "images/" + name, imageOfTongue(microscope, length, 10 + i)));
+    table << pressure << ',' << name << '\n';
+  }
+  MicroscopeScene alone;
+  alone.cells.push_back(CellScene::round({0, 0}, 28e-6, 5e-6, 1e-6));
+  ASSERT_TRUE(cv::imwrite(directory_ + "images/alone.png", microscope.render(alone, 0, 1)));
+  table << "-4500,alone.png\n-4600,nowhere.png\n";
+  table.close();
+  empty.close();
+  const std::string options = " --pixel-size 0.2e-6 --scene " + scene;
+  const Outcome outcome = CommandTest::run("--tongue images/table.csv --csv found.csv" + options);
+  ASSERT_EQ(outcome.status, 0) << outcome.out << outcome.err;
+  EXPECT_NEAR(modulus("tongue")[0], 17.9e3, 0.1 * 17.9e3) << outcome.out;
+  EXPECT_NE(outcome.out.find("; 8 tongues"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("image 'alone.png': tongue not found: "), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("image 'nowhere.png': tongue not found: "), std::string::npos) << outcome.out;
+  for (const auto& [arguments, told] : std::vector<std::pair<std::string, std::string>>{
+           {"--tongue images/empty.csv" + options, "no image shows a tongue surely"},
+           {"--tongue solved.csv" + options, "has no column 'image'"},
+           {"--tongue images/table.csv --column tongue=image:um" + options, "--column tongue: must be left out"},
+           {"--record solved.csv" + options, "--pixel-size: needs --tongue"},
+           {"--tongue images/table.csv --vision v.yaml --scene " + scene, "--vision: needs --pixel-size"}}) {
     const Outcome refused = CommandTest::run(arguments);
     EXPECT_EQ(refused.status, 2) << arguments;
     EXPECT_NE(refused.err.find(told), std::string::npos) << arguments << '\n' << refused.err;

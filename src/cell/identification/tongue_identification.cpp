@@ -11,7 +11,6 @@
 #include <stdexcept>
 
 #include "base/errors.h"
-#include "base/text_table.h"
 #include "cell/identification/natural_spline.h"
 #include "cell/identification/record_columns.h"
 #include "cell/model/converged_tongue.h"
@@ -80,9 +79,8 @@ void check(const TongueRecord& record) {
 
 }  // namespace
 
-TongueRecord readTongueRecord(const std::string& path, const std::map<std::string, std::string>& columns) {
+TongueRecord readTongueRecord(const TextTable& table, const std::map<std::string, std::string>& columns) {
   TongueRecord record;
-  const TextTable table = readTextTable(path);
   record.notes = table.notes;
   const auto found = findRecordColumns(table, RecordKind::kTongue, columns, record.notes);
   const RecordColumn &pressure = found.at("pressure"), &tongue = found.at("tongue");
@@ -97,7 +95,7 @@ TongueRecord readTongueRecord(const std::string& path, const std::map<std::strin
     record.length.push_back(length);
   }
   if (above && below)
-    throw ConfigError(path + ": column '" + table.titles()[pressure.index] +
+    throw ConfigError(table.path + ": column '" + table.titles()[pressure.index] +
                       "': has pressures above and below 0: must be suctions only");
   if (above) record.notes.emplace_back("pressures above 0 are taken as suctions");
   if (record.pressure.size() < table.rows())

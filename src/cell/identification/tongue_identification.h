@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/text_table.h"
 #include "cell/identification/identification.h"
 #include "cell/model/scene.h"
 
@@ -17,11 +18,11 @@ struct TongueRecord {
   std::vector<std::string> notes;  ///< what was done to the record, for the user
 };
 
-/// Reads a table with the columns pressure (suction, p) and tongue (tongue_length, aspirated_length, projection,
+/// Takes a table with the columns pressure (suction, p) and tongue (tongue_length, aspirated_length, projection,
 /// length) and their units: pressure_Pa, "suction (kPa)", tongue_um; `columns` names others, as for readForceCurve.
 /// Pressures are suctions whatever their sign is, as long as all have the same one. Throws ConfigError that names file,
 /// column and what is allowed.
-TongueRecord readTongueRecord(const std::string& path, const std::map<std::string, std::string>& columns);
+TongueRecord readTongueRecord(const TextTable& table, const std::map<std::string, std::string>& columns);
 
 /// Tongue length over the cell's radius as a function of suction over the modulus of the outermost layer, of one scene:
 /// geometry, Poisson's ratios and the ratios of the layers' moduli. Solved once on one mesh (tongueCurve), then a cubic

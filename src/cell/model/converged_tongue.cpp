@@ -76,6 +76,10 @@ std::vector<TonguePoint> convergedTongues(const Scene& scene, const std::vector<
     if (report) report(level, solved);
     if (done && solved > 0 && level > 0) break;
   }
+  for (TonguePoint& point : points) {
+    if (!point.converged && point.reason.empty())
+      point.reason = "only the finest mesh has a solution: its error is not known";
+  }
   return points;
 }
 

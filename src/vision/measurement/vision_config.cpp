@@ -21,6 +21,13 @@ VisionConfig VisionConfig::read(ConfigReader& reader) {
   return config;
 }
 
+VisionConfig VisionConfig::load(const std::string& path) {
+  ConfigReader reader = ConfigReader::ofFile(path);
+  VisionConfig config = read(reader);
+  reader.finish();
+  return config;
+}
+
 VisionConfig VisionConfig::standard() {
   ConfigReader nothing(YAML::Node(YAML::NodeType::Map), "");
   return read(nothing);

@@ -25,6 +25,8 @@ struct VisionConfig {
   /// What read() gives without any key. The pipettes' detectors have other defaults.
   static VisionConfig standard();
   static VisionConfig read(ConfigReader& reader);
+  /// Reads a file of its own, as config/vision.yaml. Throws ConfigError.
+  static VisionConfig load(const std::string& path);
   /// The second eye that is asked for; may be none.
   std::shared_ptr<SecondEye> secondEye() const;
   /// m of the specimen, for images of this width and height (px; 0: not known yet). Throws ConfigError when it is not

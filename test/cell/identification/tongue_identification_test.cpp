@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <random>
 
 #include "base/errors.h"
@@ -103,28 +104,28 @@ TEST(TongueIdentification, FindsTheModulusOfASolvedCell) {
 
 class TongueRecordTest : public testing::Test {
  protected:
-  std::string write(const std::string& text) const {
+  TongueRecord read(const std::string& text, const std::map<std::string, std::string>& columns = {}) const {
     std::ofstream(path_) << text;
-    return path_;
+    return readTongueRecord(readTextTable(path_), columns);
   }
   void TearDown() override { std::filesystem::remove(path_); }
   const std::string path_ = testing::TempDir() + "microinjection_tongue.csv";
 };
 
 TEST_F(TongueRecordTest, ReadsUnitsAndSigns) {
-  const TongueRecord record = readTongueRecord(write("suction (kPa),tongue_um\n0.5,3.2\n1,4.1\n,\n2,5.5\n"), {});
+  const TongueRecord record = read("suction (kPa),tongue_um\n0.5,3.2\n1,4.1\n,\n2,5.5\n");
   EXPECT_EQ(record.pressure, std::vector<double>({-500, -1000, -2000}));
   ASSERT_EQ(record.length.size(), 3u);
   EXPECT_NEAR(record.length[1], 4.1e-6, 1e-15);
   EXPECT_EQ(record.notes.size(), 2u);
-  const TongueRecord named = readTongueRecord(write("p_Pa,front_nm\n-5,20\n-6,30\n"), {{"tongue", "front_nm:nm"}});
+  const TongueRecord named = read("p_Pa,front_nm\n-5,20\n-6,30\n", {{"tongue", "front_nm:nm"}});
   EXPECT_NEAR(named.length[1], 30e-9, 1e-20);
 }
 
 TEST_F(TongueRecordTest, NamesWhatIsWrong) {
   const auto told = [&](const std::string& text) {
     try {
-      readTongueRecord(write(text), {});
+      read(text);
     } catch (const ConfigError& error) {
       return std::string(error.what());
     }
