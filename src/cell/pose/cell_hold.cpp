@@ -49,18 +49,12 @@ CellMotionInput CellHold::inDish(const Input& input) const {
 
 Eigen::Vector3d CellHold::centreInDish() const { return dishFromWorld() * state_.offset; }
 
-/// Whether the suction bears at least the cell's weight.
-bool CellHold::holds(double pressure) const {
-  return pressure < 0 && motion_.limits(pressure).pull() > std::abs(motion_.config().weight());
-}
-
 /// N, that the suction bears of the model's force, in its direction.
-double CellHold::limit(const Input& input) const {
-  if (!holds(input.pressure)) return 0;
+double CellHold::limit(const Input& input, const HoldLimits& limits) const {
   if (!input.needle || of_model_.isZero(0)) return std::numeric_limits<double>::infinity();
   Eigen::Vector3d point = input.needle->tip - state_.offset;
   if (point.norm() > radius_) point *= radius_ / point.norm();
-  return motion_.limits(input.pressure).largest(mouthFromWorld(point), mouthFromWorld(-of_model_));
+  return limits.largest(mouthFromWorld(point), mouthFromWorld(-of_model_));
 }
 
 void CellHold::enter(Regime regime) {
@@ -80,16 +74,19 @@ const CellHold::State& CellHold::step(double duration, const Input& input) {
     fading_.setZero();
     changed_ = false;
   }
+  const HoldLimits limits = motion_.limits(input.pressure);
+  // A breath of suction that does not bear the cell's weight holds nothing.
+  const bool holds = input.pressure < 0 && limits.pull() > std::abs(motion_.config().weight());
   if (!placed_) {
     placed_ = motion_.place(Eigen::Vector3d::Zero(), Eigen::Quaterniond::Identity(), inDish(input));
     copyMotion();
-    if (holds(input.pressure)) regime_ = Regime::kHeld;
+    if (holds) regime_ = Regime::kHeld;
     last_ = input;
   }
   state_.load = of_model_.norm();
-  state_.limit = limit(input);
+  state_.limit = holds ? limit(input, limits) : 0;
   const bool inside = input.needle && input.needle->inside;
-  if (regime_ == Regime::kHeld && (!holds(input.pressure) || state_.load > state_.limit)) {
+  if (regime_ == Regime::kHeld && (!holds || state_.load > state_.limit)) {
     motion_.place(centreInDish(), motion_.state().orientation, inDish(last_));
     enter(Regime::kMoving);
   }
@@ -102,7 +99,7 @@ const CellHold::State& CellHold::step(double duration, const Input& input) {
   } else if (inside) {
     carry(input);
   } else {
-    move(duration, input);
+    move(duration, input, holds);
   }
   last_ = input;
   return state_;
@@ -118,7 +115,7 @@ void CellHold::copyMotion() {
   state_.seal_resistance = motion.seal_resistance;
 }
 
-void CellHold::move(double duration, const Input& input) {
+void CellHold::move(double duration, const Input& input, bool holds) {
   if (regime_ == Regime::kCarried) motion_.place(centreInDish(), motion_.state().orientation, inDish(last_));
   enter(Regime::kMoving);
   // Hertz's law with the stiffness that the model has there.
@@ -134,8 +131,7 @@ void CellHold::move(double duration, const Input& input) {
   motion_.setNeedleStiffness(std::clamp(stiffness, hertz / kStiffnessSpan, hertz * kStiffnessSpan));
   motion_.step(duration, inDish(input));
   copyMotion();
-  if (!holds(input.pressure)) {
-    // It may still lie at the lip, as a breath of suction has it.
+  if (!holds) {
     if (state_.mode == CellMode::kHeld || state_.mode == CellMode::kSlipping) state_.mode = CellMode::kFree;
   } else if (state_.mode == CellMode::kHeld && state_.sealed && state_.load <= kRegained * state_.limit) {
     enter(Regime::kHeld);

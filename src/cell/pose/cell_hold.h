@@ -67,10 +67,9 @@ class CellHold {
   enum class Regime { kHeld, kMoving, kCarried };
 
   CellMotionInput inDish(const Input& input) const;
-  bool holds(double pressure) const;
-  double limit(const Input& input) const;
+  double limit(const Input& input, const HoldLimits& limits) const;
   Eigen::Vector3d centreInDish() const;
-  void move(double duration, const Input& input);
+  void move(double duration, const Input& input, bool holds);
   void carry(const Input& input);
   void copyMotion();
   void enter(Regime regime);
