@@ -57,10 +57,14 @@ class GetFEM(unittest.TestCase):
         gradient = numpy.eye(3) + self.GRADIENT
         green, strain = (gradient.T @ gradient - numpy.eye(3)) / 2, (self.GRADIENT + self.GRADIENT.T) / 2
         log = math.log(numpy.linalg.det(gradient))
+        stretches = numpy.linalg.svd(gradient, compute_uv=False)
         first, jacobian, m = (gradient ** 2).sum(), math.exp(log), 4 / 3 * self.MU
         expected = {
             'stable_neo_hookean': m / 2 * (first - 3) - m / 2 * math.log((first + 1) / 4) - 0.75 * m * (jacobian - 1)
             + (self.LAMBDA + 5 / 6 * self.MU) / 2 * (jacobian - 1) ** 2,
+            'ogden': self.MU / 8 * ((stretches ** 4).sum() - 3) - self.MU / 2 * log + self.LAMBDA / 2 * log ** 2,
+            'gent': -15 * self.MU * math.log(1 - (first - 3) / 30) - self.MU * log
+            + (self.LAMBDA - self.MU / 15) / 2 * log ** 2,
             'linear': self.MU * (strain ** 2).sum() + self.LAMBDA / 2 * numpy.trace(strain) ** 2,
             'st_venant_kirchhoff': self.MU * (green ** 2).sum() + self.LAMBDA / 2 * numpy.trace(green) ** 2,
             'neo_hookean': self.MU / 2 * ((gradient ** 2).sum() - 3) - self.MU * log + self.LAMBDA / 2 * log ** 2,
@@ -71,6 +75,11 @@ class GetFEM(unittest.TestCase):
                 with self.subTest(f'{law}, {dimension}'):
                     self.assertAlmostEqual(self.energy(law, dimension), value, 12)
         self.assertIsNone(getfem_energy.strain_energy('corotated', 1, 0.3, 3, False))
+
+    def test_a_materials_own_numbers_are_the_defaults(self):
+        header = (ROOT / 'src' / 'cell' / 'material' / 'material.h').read_text(encoding='utf-8')
+        for name, value in (('ogden_exponent', getfem_energy.OGDEN_EXPONENT), ('gent_limit', getfem_energy.GENT_LIMIT)):
+            self.assertIn(f'double {name} = {value};', header)
 
     def test_a_stationary_pressure_leaves_the_energy(self):
         log = math.log(numpy.linalg.det(numpy.eye(3) + self.GRADIENT))

@@ -1,5 +1,8 @@
 """Strain energies in GetFEM's language, in space and in the section of a body of revolution."""
 
+# A case does not have what a material alone has: it is that of MaterialConfig() (src/cell/material/material.h).
+OGDEN_EXPONENT, GENT_LIMIT = 4, 30
+
 
 def strain_energy(law, young, poisson, dimension, mixed):
     """Returns the energy density, weighted for the section; None for a law that is not here.
@@ -22,6 +25,14 @@ def strain_energy(law, young, poisson, dimension, mixed):
     elif law == 'neo_hookean':
         dilatation = f'log({jacobian})'
         distortion = f'{mu / 2!r}*({first}-3)-{mu!r}*{dilatation}'
+    elif law == 'ogden':  # of exponent 4, for which the sum of powers is tr C^2
+        dilatation = f'log({jacobian})'
+        fourth = f"(Norm_sqr({gradient}'*{gradient})" + (f'+pow({hoop},4))' if section else ')')
+        distortion = f'{2 * mu / OGDEN_EXPONENT ** 2!r}*({fourth}-3)-{2 * mu / OGDEN_EXPONENT!r}*{dilatation}'
+    elif law == 'gent':
+        lam -= 2 * mu / GENT_LIMIT
+        dilatation = f'log({jacobian})'
+        distortion = f'{-mu * GENT_LIMIT / 2!r}*log(1-({first}-3)/{GENT_LIMIT})-{mu!r}*{dilatation}'
     elif law == 'stable_neo_hookean':
         m, lam = 4 * mu / 3, lam + 5 * mu / 6
         dilatation = f'({jacobian}-1)'

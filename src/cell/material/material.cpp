@@ -63,7 +63,9 @@ const std::vector<MaterialParameter>& materialParameters() {
   static const std::vector<MaterialParameter> parameters = {
       {"young_modulus", &MaterialConfig::young_modulus, Range::positive(), "Pa", "", 1},
       {"poisson_ratio", &MaterialConfig::poisson_ratio, Range::open(-1, 0.5), "", ""},
-      {"mooney_ratio", &MaterialConfig::mooney_ratio, Range::closed(0, 1), "", "mooney_rivlin"}};
+      {"mooney_ratio", &MaterialConfig::mooney_ratio, Range::closed(0, 1), "", "mooney_rivlin"},
+      {"ogden_exponent", &MaterialConfig::ogden_exponent, Range::closed(1, 30), "", "ogden"},
+      {"gent_limit", &MaterialConfig::gent_limit, Range::closed(0.1, 1e4), "", "gent"}};
   return parameters;
 }
 

@@ -57,7 +57,7 @@ class Material {
   virtual Kinematics kinematics(const Eigen::Matrix3d& F) const = 0;
 
   /// Strain energy W per undeformed volume, J/m^3; zero in the undeformed state, +infinity where it
-  /// is not defined (det F <= 0 if the material resists inversion).
+  /// is not defined (det F <= 0 if the material resists inversion, a stretch beyond the limit of gent).
   double energyDensity(const Eigen::Matrix3d& F) const { return energyDensity(kinematics(F), whole()); }
   /// First Piola-Kirchhoff stress P = dW/dF, Pa.
   Eigen::Matrix3d stress(const Eigen::Matrix3d& F) const { return stress(kinematics(F), whole()); }
@@ -72,7 +72,7 @@ class Material {
 
   /// kappa, Pa, > 0: the model's lambda or, where that is small or negative, the smaller one of mu and half of the bulk
   /// modulus. Wd contains (lambda - kappa)/2 g^2, so a kappa above the bulk modulus leaves a Wd that gives way to
-  /// changes of volume. Of the six models only stable_neo_hookean has that, by mu/6, because its lambda is Hooke's plus
+  /// changes of volume. Of the models only stable_neo_hookean has that, by mu/6, because its lambda is Hooke's plus
   /// 5/6 mu.
   double dilatationalModulus() const { return kappa_; }
 
@@ -121,13 +121,15 @@ struct MaterialConfig {
   double young_modulus = 17.9e3;      ///< Pa, > 0
   double poisson_ratio = 0.49;        ///< in (-1, 0.5)
   double mooney_ratio = 0.25;         ///< C01 / (C10 + C01) of mooney_rivlin, in [0, 1]; others ignore it
+  double ogden_exponent = 4;          ///< alpha of ogden, in [1, 30]; 2 is neo-Hookean; others ignore it
+  double gent_limit = 30;             ///< Jm of gent, of I1 - 3, in [0.1, 1e4]; others ignore it
   ViscoelasticityConfig viscoelasticity = {};
 
   /// Throws ConfigError with all errors at once.
   void validate() const;
 };
 
-/// linear, st_venant_kirchhoff, neo_hookean, mooney_rivlin, stable_neo_hookean, corotated.
+/// linear, st_venant_kirchhoff, neo_hookean, mooney_rivlin, ogden, gent, stable_neo_hookean, corotated.
 const std::vector<std::string>& materialModels();
 
 /// Throws ConfigError when the configuration is not valid.

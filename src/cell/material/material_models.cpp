@@ -1,9 +1,11 @@
 #include "cell/material/material_models.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "cell/material/second_derivatives.h"
 #include "cell/material/volume.h"
@@ -187,6 +189,127 @@ class MooneyRivlin : public Material {
   double c01_;  ///< Pa
 };
 
+/// C = F^T F by the squares c of the principal stretches, largest last, and their directions at rest, the columns of V.
+struct PrincipalStretches {
+  explicit PrincipalStretches(const Matrix3d& F) {
+    const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(F.transpose() * F);
+    V = solver.eigenvectors();
+    // Rounding is relative to the largest c. It must not make the smallest one zero or negative.
+    c = solver.eigenvalues().cwiseMax(std::numeric_limits<double>::epsilon() * solver.eigenvalues()[2]);
+  }
+
+  Eigen::Vector3d c;
+  Matrix3d V;
+};
+
+/// (a^p - b^p) / (a - b), p b^(p-1) for a = b; exact to rounding also for nearly equal a and b. @pre a, b > 0
+double dividedDifferenceOfPower(double a, double b, double p) {
+  const double t = a / b - 1;
+  return std::pow(b, p - 1) * (t == 0 ? p : std::expm1(p * std::log1p(t)) / t);
+}
+
+/// Ogden's energy of one term (Ogden, "Large deformation isotropic elasticity - on the correlation of theory and
+/// experiment for incompressible rubberlike solids", Proc. R. Soc. Lond. A 326, 1972) with the volumetric terms of
+/// NeoHookean, which is alpha = 2: W = 2 mu / alpha^2 (sum_i l_i^alpha - 3) - 2 mu / alpha ln J + lambda/2 g^2, g = ln
+/// J, with the principal stretches l_i, J = det F. At small strain the first two terms are mu sum_i (ln l_i)^2, so that
+/// it is Hooke's law for any alpha. Infinite for J <= 0. The larger alpha, the more it stiffens in tension. With
+/// lambda < 0 it softens for J below exp(2 mu / (alpha lambda)).
+class Ogden : public Material {
+ public:
+  /// @param exponent alpha, >= 1: sum_i l_i^alpha is a convex function of F
+  Ogden(const Lame& lame, double exponent)
+      : Material(lame.lambda, lame), factor_(2 * lame.mu / exponent), power_(exponent / 2) {}
+
+  Kinematics kinematics(const Matrix3d& F) const override { return logarithmicDilatation(F); }
+  bool resistsInversion() const override { return true; }
+
+ protected:
+  double modelEnergy(const Kinematics& kinematics) const override {
+    const PrincipalStretches stretches(kinematics.deformation_gradient);
+    const double sum = stretches.c.array().pow(power_).sum() - 3;
+    return factor_ * (sum / (2 * power_) - kinematics.dilatation);
+  }
+
+  Matrix3d modelStress(const Kinematics& kinematics) const override {
+    const PrincipalStretches stretches(kinematics.deformation_gradient);
+    return kinematics.deformation_gradient * secondStress(stretches) - factor_ * kinematics.dilatation_gradient;
+  }
+
+  void addModelTangent(const Kinematics& kinematics, double energy_weight, double dilatation_weight,
+                       Matrix9d& result) const override {
+    // P = F S with S = factor C^p: dP = dF S + F dS, where in the directions v_i dS is dC times the divided differences
+    // of factor c^p (Daleckii and Krein; Higham, "Functions of matrices", theorem 3.11), and dC_ij is dF : (F v_i v_j^T
+    // + F v_j v_i^T).
+    const PrincipalStretches stretches(kinematics.deformation_gradient);
+    const Matrix3d deformed = kinematics.deformation_gradient * stretches.V;
+    const double factor = energy_weight * factor_;
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j <= i; ++j) {
+        const Matrix3d pair = deformed.col(i) * stretches.V.col(j).transpose();
+        const Matrix3d other = deformed.col(j) * stretches.V.col(i).transpose();
+        const double slope = dividedDifferenceOfPower(stretches.c[j], stretches.c[i], power_ - 1);
+        addOuterProduct((i == j ? 0.5 : 1) * factor * slope, pair + other, result);
+      }
+    }
+    addRightProduct(energy_weight * secondStress(stretches), result);
+    addTransposingProduct(factor - dilatation_weight, kinematics.dilatation_gradient, result);
+  }
+
+ private:
+  /// Second Piola-Kirchhoff stress of the first term, Pa.
+  Matrix3d secondStress(const PrincipalStretches& stretches) const {
+    const Eigen::Vector3d values = factor_ * stretches.c.array().pow(power_ - 1);
+    return stretches.V * values.asDiagonal() * stretches.V.transpose();
+  }
+
+  double factor_;  ///< Pa, 2 mu / alpha
+  double power_;   ///< alpha / 2, of the squares of the stretches
+};
+
+/// Gent: W = -mu Jm/2 ln(1 - (I1 - 3) / Jm) - mu ln J + lambda'/2 g^2, g = ln J, with I1 = tr(F^T F), J = det F (Gent,
+/// "A new constitutive relation for rubber", Rubber Chemistry and Technology 69, 1996, whose rubber is incompressible).
+/// lambda' = lambda - 2 mu / Jm gives Hooke's law at small strain, because the first term's (I1 - 3)^2 contributes one
+/// in (tr e)^2. It is neo-Hookean for an infinite Jm. Infinite for J <= 0 and for I1 - 3 >= Jm, where its chains are
+/// stretched out. With lambda' < 0, that is nu < 1 / (2 + Jm), it softens under strong compression.
+class Gent : public Material {
+ public:
+  /// @param limit Jm, > 0
+  Gent(const Lame& lame, double limit)
+      : Material(lame.lambda - 2 * lame.mu / limit, lame), mu_(lame.mu), limit_(limit) {}
+
+  Kinematics kinematics(const Matrix3d& F) const override { return logarithmicDilatation(F); }
+  bool resistsInversion() const override { return true; }
+
+ protected:
+  double modelEnergy(const Kinematics& kinematics) const override {
+    const double used = (kinematics.deformation_gradient.squaredNorm() - 3) / limit_;
+    if (!(used < 1)) return std::numeric_limits<double>::infinity();
+    return -mu_ * (0.5 * limit_ * std::log1p(-used) + kinematics.dilatation);
+  }
+
+  Matrix3d modelStress(const Kinematics& kinematics) const override {
+    const Matrix3d& F = kinematics.deformation_gradient;
+    return mu_ * (stiffening(F) * F - kinematics.dilatation_gradient);
+  }
+
+  void addModelTangent(const Kinematics& kinematics, double energy_weight, double dilatation_weight,
+                       Matrix9d& result) const override {
+    // ds = 2 s^2 / Jm F : dF, and as for neo-Hookean.
+    const Matrix3d& F = kinematics.deformation_gradient;
+    const double mu = energy_weight * mu_, s = stiffening(F);
+    addOuterProduct(2 * mu * s * s / limit_, F, result);
+    addTransposingProduct(mu - dilatation_weight, kinematics.dilatation_gradient, result);
+    result.diagonal().array() += s * mu;
+  }
+
+ private:
+  /// s = 2 / mu dW/dI1; 1 at rest.
+  double stiffening(const Matrix3d& F) const { return limit_ / (limit_ - (F.squaredNorm() - 3)); }
+
+  double mu_;     ///< Pa
+  double limit_;  ///< Jm, of I1 - 3
+};
+
 /// Stable neo-Hookean (Smith, de Goes, Kim, "Stable neo-Hookean flesh simulation", ACM Transactions
 /// on Graphics 37, 2018, equation 14): W = m/2 (I - 3) + l/2 (J - a)^2 - m/2 ln(I + 1) + constant,
 /// a = 1 + 3 m / (4 l), with I = tr(F^T F), J = det F; m = 4/3 mu and l = lambda + 5/6 mu give
@@ -295,6 +418,14 @@ std::unique_ptr<Material> makeMooneyRivlin(const Lame& lame, const MaterialConfi
   return std::make_unique<MooneyRivlin>(lame, config.mooney_ratio);
 }
 
+std::unique_ptr<Material> makeOgden(const Lame& lame, const MaterialConfig& config) {
+  return std::make_unique<Ogden>(lame, config.ogden_exponent);
+}
+
+std::unique_ptr<Material> makeGent(const Lame& lame, const MaterialConfig& config) {
+  return std::make_unique<Gent>(lame, config.gent_limit);
+}
+
 }  // namespace
 
 const std::vector<std::pair<std::string, MaterialFactory>>& materialFactories() {
@@ -303,6 +434,8 @@ const std::vector<std::pair<std::string, MaterialFactory>>& materialFactories() 
       {"st_venant_kirchhoff", make<StVenantKirchhoff>},
       {"neo_hookean", make<NeoHookean>},
       {"mooney_rivlin", makeMooneyRivlin},
+      {"ogden", makeOgden},
+      {"gent", makeGent},
       {"stable_neo_hookean", make<StableNeoHookean>},
       {"corotated", make<Corotated>}};
   return factories;

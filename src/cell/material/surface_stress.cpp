@@ -130,6 +130,12 @@ std::optional<Eigen::Matrix3d> deformationBehind(const SurfacePiece& piece, cons
   const auto energy = [&](const Eigen::Vector3d& f) { return material.energyDensity(unknown.F(f)) - load.dot(f); };
   Eigen::Vector3d column = unknown.cofactor() / unknown.cofactor().squaredNorm();  // keeps the volume
   double present = energy(column);
+  // A material with a limit of its stretch may bear a shorter column only.
+  for (int halving = 0; halving < kMostHalvings && !std::isfinite(present); ++halving) {
+    column /= 2;
+    present = energy(column);
+  }
+  if (!std::isfinite(present)) return std::nullopt;
   for (int iteration = 0; iteration < kMostIterations; ++iteration) {
     const Material::Kinematics kinematics = material.kinematics(unknown.F(column));
     const Eigen::Matrix3d stiffness = normalStiffness(material.tangent(kinematics, material.whole()), unknown.normal());

@@ -125,7 +125,7 @@ bool LoadPath::settle(int& iterations, std::string& reason) {
 
 bool LoadPath::balance(State& trial, int& iterations, std::string& reason, bool other_contact) {
   if (!system_.residual(trial.x, residual_, trial.reaction)) {
-    reason = "an element would be inverted";
+    reason = "an element would be inverted, or stretched beyond what its material bears";
     return false;
   }
   double last = std::numeric_limits<double>::infinity();

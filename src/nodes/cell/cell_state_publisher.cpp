@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "cell/material/material_parameter.h"
 #include "cell/model/cell_parameters.h"
 #include "cell/model/touching_vertices.h"
 #include "nodes/runtime/conversions.h"
@@ -27,8 +28,13 @@ void fillCell(const Scene& scene, cell_microinjection::CellState& state) {
   }
   state.layer_radii = scene.cell.outerRadii();
   if (scene.cell.tensegrity) return;
-  state.material = scene.cell.material().model;
-  state.mooney_ratio = scene.cell.material().mooney_ratio;
+  const MaterialConfig& material = scene.cell.material();
+  state.material = material.model;
+  for (const MaterialParameter& each : materialParameters()) {
+    if (each.model != material.model) continue;
+    state.parameter_names.emplace_back(each.name);
+    state.parameter_values.push_back(material.*each.value);
+  }
 }
 
 }  // namespace

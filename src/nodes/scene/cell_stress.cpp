@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "base/errors.h"
+#include "cell/material/material_parameter.h"
 #include "cell/model/placed_cell.h"
 #include "nodes/display/cell_state_reader.h"
 
@@ -23,14 +24,14 @@ LoadedSurface loadedSurface(const CellSurface& surface, bool force_known) {
 
 std::optional<DisplayedSolid> toSolid(const cell_microinjection::CellState& message) {
   if (message.material.empty()) return std::nullopt;
-  const auto young_modulus = cellParameter(message, "young_modulus");
-  const auto poisson_ratio = cellParameter(message, "poisson_ratio");
-  if (!young_modulus || !poisson_ratio) return std::nullopt;
   DisplayedSolid solid;
   solid.material.model = message.material;
-  solid.material.young_modulus = *young_modulus;
-  solid.material.poisson_ratio = *poisson_ratio;
-  solid.material.mooney_ratio = message.mooney_ratio;
+  for (const MaterialParameter& each : materialParameters()) {
+    if (!each.ofAllModels() && each.model != message.material) continue;
+    const auto value = cellParameter(message, each.name);
+    if (!value) return std::nullopt;
+    solid.material.*each.value = *value;
+  }
   solid.surface_tension = cellParameter(message, "surface_tension").value_or(0);
   solid.layer_radii.assign(message.layer_radii.begin(), message.layer_radii.end());
   solid.centre.z() = cellParameter(message, PlacedCell::kName).value_or(0);

@@ -97,6 +97,20 @@ TEST(SurfaceStress, ColumnIsStationaryByFiniteDifferences) {
   }
 }
 
+/// A surface that is pressed together: the column that would keep the volume is longer than the material bears.
+TEST(SurfaceStress, IsFoundWithinTheLimitOfTheMaterial) {
+  const double limit = MaterialConfig().gent_limit;
+  const auto law = material("gent", 0.3);
+  const SurfacePiece piece = pieceUnder(0.4 * Eigen::Matrix3d::Identity());
+  ASSERT_GT(2 * std::pow(0.4, 2) + std::pow(0.4, -4) - 3, limit);
+  const auto F = deformationBehind(piece, *law, 0);
+  ASSERT_TRUE(F);
+  EXPECT_LT(F->squaredNorm() - 3, limit);
+  EXPECT_NEAR((law->stress(*F) * normalOf(piece.rest)).norm(), 0, 1e-6 * kYoung);
+  // And none where the surface alone is beyond it.
+  EXPECT_FALSE(deformationBehind(pieceUnder(5 * Eigen::Matrix3d::Identity()), *law, 0));
+}
+
 TEST(SurfaceStress, HasNoneOfADegeneratePiece) {
   SurfacePiece piece = pieceUnder(Eigen::Matrix3d::Identity());
   piece.deformed.col(1) = piece.deformed.col(0);

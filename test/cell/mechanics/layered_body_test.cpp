@@ -193,12 +193,30 @@ TYPED_TEST(LayeredBodyTest, InvertedElementsAreAdmissibleWhereAllowedOnly) {
       };
       const Eigen::VectorXd state = stateOf(*body, mirrored);
       EXPECT_LT(body->smallestJacobian(state), -0.4);
-      const bool resists = model == "neo_hookean" || model == "mooney_rivlin";
+      const bool resists = model == "neo_hookean" || model == "mooney_rivlin" || model == "ogden" || model == "gent";
       const bool expected = model == "linear" || (inversion == Inversion::kAllowed && !resists);
       LocalEnergy local;
       local.energy = infinity;
       EXPECT_EQ(body->evaluate(0, state, Order::kHessian, local), expected) << model;
       EXPECT_TRUE(!expected || (std::isfinite(local.energy) && local.hessian.allFinite())) << model;
+    }
+  }
+}
+
+/// As one that inverts is: the energy is infinite, though det F > 0.
+TYPED_TEST(LayeredBodyTest, AStretchBeyondTheMaterialsLimitIsNotAdmissible) {
+  using Place = typename TestFixture::Point;
+  const double limit = MaterialConfig().gent_limit;
+  for (const Inversion inversion : {Inversion::kRefused, Inversion::kAllowed}) {
+    const auto body = this->block("gent", 0.45, inversion);
+    for (const double share : {0.999, 1.001}) {  // of the limit
+      const double stretch = std::sqrt(1 + share * limit / 3);
+      const Eigen::VectorXd state = stateOf(*body, [&](const Place& x) { return Place((stretch - 1) * x); });
+      ASSERT_GT(body->smallestJacobian(state), 1);
+      for (const Order order : {Order::kEnergy, Order::kGradient, Order::kHessian}) {
+        LocalEnergy local;
+        EXPECT_EQ(body->evaluate(0, state, order, local), share < 1) << stretch;
+      }
     }
   }
 }

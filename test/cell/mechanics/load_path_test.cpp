@@ -72,6 +72,7 @@ TYPED_TEST(LoadPathTest, UniformCompressionIsExact) {
   // St-Venant-Kirchhoff: less, since mixed elements lose stability before the material does where lambda < mu.
   for (const Expected& expected : {Expected{"linear", 0.7, 2 * (0.7 - 1)},
                                    {"neo_hookean", 0.7, 0.7 - 1 / 0.7},
+                                   {"ogden", 0.7, (std::pow(0.7, 3) - 1 / 0.7) / 2},
                                    {"st_venant_kirchhoff", 0.8, 0.8 * (0.64 - 1)}}) {
     SCOPED_TRACE(expected.model);
     const Eigen::Vector3d target(0, 0, expected.s - 1);
@@ -103,6 +104,36 @@ TYPED_TEST(LoadPathTest, StiffnessIsTheDerivativeOfTheReactionAndThatOfTheEnergy
   const Eigen::VectorXd at = this->tip(point);
   EXPECT_LT(derivativeError(reaction, at, stiffness.bottomRightCorner(at.size(), at.size()), 1e-4), 1e-5);
   EXPECT_LT(derivativeError(energy, at, this->tip(force).transpose(), 1e-4), 1e-6);
+}
+
+/// A step that leaves the limit of Gent's material is refused like one that inverts an element: the path ends before
+/// it, where the force grows without bound, and can be gone back.
+TYPED_TEST(LoadPathTest, EndsBeforeTheLimitOfItsMaterial) {
+  constexpr int kDim = TypeParam::kDim;
+  MaterialConfig config{"gent", 2, 0.45};
+  config.gent_limit = 0.5;
+  const auto mesh = irregularBlock<kDim>(2);
+  typename LayeredBody<kDim>::Materials materials{makeMaterial(config)};
+  const auto body = std::make_shared<LayeredBody<kDim>>(mesh, TypeParam::kKind, std::move(materials));
+  EquilibriumSystem system({body}, betweenPlates(*body), methodFor(TypeParam::kKind));
+  LoadPath path(system, pathConfig(1, false));
+  ASSERT_TRUE(path.advance({0, 0, 0.1}).converged);
+  const double early = path.reaction().z();
+  const LoadPath::Result result = path.advance({0, 0, 3});
+  EXPECT_FALSE(result.converged);
+  EXPECT_FALSE(result.reason.empty());
+  double largest = 0;  // I1 - 3
+  for (int e = 0; e < body->elementCount(); ++e) {
+    for (int q = 0; q < body->pointCount(); ++q)
+      largest = std::max(largest, body->deformationGradient(e, q, path.state()).squaredNorm() - 3);
+  }
+  EXPECT_LT(largest, config.gent_limit);
+  EXPECT_GT(largest, 0.9 * config.gent_limit);
+  EXPECT_GT(path.translation().z(), 0.2);
+  EXPECT_LT(path.translation().z(), 1);
+  EXPECT_GT(path.reaction().z(), 20 * early);
+  ASSERT_TRUE(path.advance({0, 0, 0.1}).converged);
+  EXPECT_NEAR(path.reaction().z(), early, 1e-6 * early);
 }
 
 TYPED_TEST(LoadPathTest, AClosedCycleGivesAllEnergyBackAndLeavesNoForce) {

@@ -97,6 +97,17 @@ TEST(ConvergedForce, SlidingHemisphere) {
   expectForce(points[2], 0.3764e-6, 0.015);
 }
 
+/// Ratios to the neo-Hookean force on one mesh by GetFEM: benchmark/peers/getfem_cell.py, P2-P1, section of level 1.
+TEST(ConvergedForce, StiffeningMaterialsAreAsStiffAsInGetFEM) {
+  Scene sliding = pipetteScene("sliding");
+  const double neo_hookean = push(sliding, {5e-6})[0].force.z();
+  sliding.cell.material().model = "ogden";
+  expectForce(push(sliding, {5e-6})[0], 0.9913 * neo_hookean, 0.003);  // softer in moderate compression
+  sliding.cell.material().model = "gent";
+  sliding.cell.material().gent_limit = 1;
+  expectForce(push(sliding, {5e-6})[0], 1.2268 * neo_hookean, 0.003);
+}
+
 TEST(ConvergedForce, MuchFrictionSticks) {
   Scene rough = pipetteScene("sliding");
   rough.needle.contact.friction = 3;

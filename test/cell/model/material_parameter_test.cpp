@@ -78,11 +78,11 @@ INSTANTIATE_TEST_SUITE_P(All, MaterialParameterTest, testing::ValuesIn(materialP
 TEST(MaterialParameters, AreAllNumbersOfAMaterial) {
   struct Numbers {
     std::string model;
-    double numbers[3];
+    double numbers[5];
     ViscoelasticityConfig viscoelasticity;
   };
   static_assert(sizeof(Numbers) == sizeof(MaterialConfig), "enter the new number in materialParameters(), and here");
-  EXPECT_EQ(materialParameters().size(), 3U);
+  EXPECT_EQ(materialParameters().size(), 5U);
   std::set<std::string> names;
   for (const MaterialParameter& each : materialParameters()) names.insert(each.name);
   EXPECT_EQ(names.size(), materialParameters().size());

@@ -162,6 +162,20 @@ TEST_F(DisplayTest, ColourIsThatOfTheStress) {
   show("displacement", false, "displacement");
 }
 
+/// What a material alone has is among the parameters of its message.
+TEST_F(DisplayTest, ColourIsThatOfTheStressOfAnExponent) {
+  show("von_mises_stress", false, "von Mises stress");
+  cell_microinjection::CellState cell = stretched(kStretch);
+  cell.material = "ogden";
+  cell.parameter_names.emplace_back("ogden_exponent");
+  cell.parameter_values.push_back(30);
+  showCell(cell);
+  // As above: 2 mu / 30 (a^30 - 1/a^60), in kPa, 2.2 times that of neo-Hookean.
+  const double stress = kYoung / 45 * (std::pow(kStretch, 30) - std::pow(kStretch, -60)) / 1e3;
+  EXPECT_GT(label(4), 0.97 * stress);
+  EXPECT_LT(label(4), 1.5 * stress);
+}
+
 /// It grows while the cell is the same, so that a colour keeps its meaning.
 TEST_F(DisplayTest, ScaleBeginsAnewWithAnotherCell) {
   show("displacement", false, "displacement");
