@@ -21,12 +21,14 @@ import time
 
 import getfem
 import numpy
+import scipy.integrate
 
-PENALTY = 500  # shear moduli over R: of contact and of a wall that goes inside of b
-SMOOTH = 0.01  # R: penetration over which the contact's stiffness grows to the penalty
+PENALTY = 2000  # shear moduli over R: of contact
+CLOSED = 500  # shear moduli over R: of a wall that goes inside of b
+SMOOTH = 0.005  # R: way over which the contact's stiffness grows to the penalty, half of it before they touch
 TOLERANCE, ITERATIONS = 1e-6, 14  # of Newton's method: largest residual, mu R^2
 LARGEST_CHANGE = 0.25  # R: of an iteration
-LARGEST_STEP, SMALLEST_STEP = 0.05, 1e-9  # R: of the tip
+LARGEST_STEP, SMALLEST_STEP = 0.08, 1e-9  # R: of the tip
 WALL, CONTACT = 1, 2
 SECTION, GRADIENT, HOOP = '*(2*pi*X(1))', '(Id(2)+Grad_u)', '(1+u(1)/X(1))'
 
@@ -110,10 +112,12 @@ class Puncture:
     def __init__(self, options):
         self.options, unit = options, options.needle_radius
         self.mu = options.young / (2 * (1 + options.poisson))
+        self.toughness, self.d = options.toughness / (self.mu * unit), options.opening / unit
         hole, body = self.hole, self.body = options.hole / unit, options.cell_radius / unit
         grid = section_grid(options, hole, body)
         mesh = self.mesh = make_mesh(grid)
-        mesh.set_region(WALL, on_side(mesh, grid[0][grid[0, :, 0] < hole + 1e-9]))
+        wall = grid[0][grid[0, :, 0] < hole + 1e-9]
+        mesh.set_region(WALL, on_side(mesh, wall))
         mesh.set_region(CONTACT, numpy.hstack([on_side(mesh, grid[:, 0]), on_side(mesh, grid[0])]))
         whole, pressures = getfem.MeshFem(mesh, 2), getfem.MeshFem(mesh, 1)
         whole.set_fem(getfem.Fem('FEM_PK(2,2)'))
@@ -131,9 +135,10 @@ class Puncture:
         model.add_initialized_fem_data('before', self.field, numpy.zeros(self.field.nbdof()))
         self.points = getfem.MeshImData(self.faces, WALL, [1])
         model.add_im_data('reached', self.points)
+        flaw = f'{1e3 * self.d!r}*Heaviside(X(2)-({wall[0, 1] - options.flaw / unit!r}))'
+        model.set_variable('reached', model.interpolation(flaw, self.points, WALL))
         for name, value in (('centre', 0.0), ('damping', 0.0)):
             model.add_initialized_data(name, value)
-        self.toughness, self.d = options.toughness / (self.mu * unit), options.opening / unit
         self.edge = options.edge_radius / unit if options.edge_radius else 1.0
         self.add_terms()
         begin = model.interval_of_variable('u')[0]
@@ -150,7 +155,7 @@ class Puncture:
             self.options.law, self.options.parameter, 2 * nu / (1 - 2 * nu)))
         beside, below = f'(X(1)+u(1)-({1 - self.edge!r}))', '(centre-X(2)-u(2))'
         distance = f'sqrt(2*(half_sqr_pos_part{beside}+half_sqr_pos_part{below})+1e-14)'
-        gap = f'({self.edge!r}-{distance})'
+        gap = f'({self.edge + SMOOTH / 2!r}-{distance})'
         gaps = gap, f'({gap}-{SMOOTH!r})'
         cubes = [f'pow(2*half_sqr_pos_part{x}+1e-16,1.5)' for x in gaps]
         self.model.add_nonlinear_term(
@@ -158,9 +163,9 @@ class Puncture:
         squares = [f'half_sqr_pos_part{x}' for x in gaps]
         self.lift = f'{PENALTY / SMOOTH!r}*({squares[0]}-{squares[1]})*pos_part{below}/{distance}' + SECTION
         largest = 'pos_part(reached+pos_part(u(1)-reached))'
-        self.traction = f'{c / d ** 2!r}*exp(-{largest}*{1 / d!r})*pos_part(u(1))-{PENALTY!r}*neg_part(u(1))'
+        self.traction = f'{c / d ** 2!r}*exp(-{largest}*{1 / d!r})*pos_part(u(1))-{CLOSED!r}*neg_part(u(1))'
         if self.options.bonded:
-            self.traction = f'{PENALTY!r}*u(1)'
+            self.traction = f'{CLOSED!r}*u(1)'
         self.model.add_nonlinear_term(
             self.faces, f'({self.traction}+damping*(u(1)-before(1)))*Test_u(1)' + SECTION, WALL, False, False)
         self.largest = largest
@@ -168,17 +173,27 @@ class Puncture:
     def integral(self, expression, region):
         return getfem.asm('generic', self.faces, 0, expression, region, self.model)
 
+    def residual(self, state):
+        """Returns the residual of all unknowns; None where an element is turned inside out."""
+        self.model.to_variables(state)
+        try:
+            self.model.assembly('build_rhs')
+        except RuntimeError:
+            return None
+        residual = -numpy.ravel(self.model.rhs())
+        return residual if numpy.isfinite(residual).all() else None
+
     def newton(self, state):
         """Returns the equilibrium for the present data and the iterations; None where none is found."""
+        change, share = 0 * state, 0.0
         for iteration in range(ITERATIONS):
-            self.model.to_variables(state)
-            try:
-                self.model.assembly('build_rhs')
-            except RuntimeError:  # an element is turned inside out
+            residual = self.residual(state + share * change)
+            while residual is None and share > 0.1:
+                share /= 2
+                residual = self.residual(state + share * change)
+            if residual is None:
                 return None, iteration
-            residual = -numpy.ravel(self.model.rhs())
-            if not numpy.isfinite(residual).all():
-                return None, iteration
+            state = state + share * change
             if numpy.abs(residual).max() <= TOLERANCE:
                 return state, iteration
             self.model.assembly('build_matrix')
@@ -186,7 +201,7 @@ class Puncture:
             size = numpy.abs(change[self.displacements]).max()
             if not size < 20:
                 return None, iteration
-            state = state + min(1.0, LARGEST_CHANGE / size) * change
+            share = min(1.0, LARGEST_CHANGE / size)
         return None, ITERATIONS
 
     def measures(self):
@@ -229,6 +244,39 @@ class Puncture:
         return numpy.array(rows)
 
 
+def steady_energy(law, parameter, x):
+    """Returns the energy in mu R^2 that widens a length of a hole from x R to R in a large incompressible body."""
+    def density(a):  # a: hoop stretch
+        square = a ** 2 + a ** -2 - 2
+        if law == 'gent':
+            return -parameter / 2 * math.log(1 - square / parameter)
+        power = parameter if law == 'ogden' else 2
+        return 2 / power ** 2 * (a ** power + a ** -power - 2)
+    # With a^2 = 1 + (1 - x^2)/r^2 over the undeformed r = x e^t.
+    return 2 * math.pi * scipy.integrate.quad(
+        lambda t: density(math.sqrt(1 + (x ** -2 - 1) * math.exp(-2 * t))) * (x * math.exp(t)) ** 2, 0, 12)[0]
+
+
+def summary(puncture, rows):
+    """Returns lines on the onset, the largest force before the first drop by 2 %, and on the last quarter of the crack."""
+    options, unit, x = puncture.options, puncture.options.needle_radius, puncture.hole
+    force = puncture.mu * unit ** 2
+    depth, load, _, crack = rows.T
+    before = numpy.maximum.accumulate(load)
+    dropped = numpy.flatnonzero(load < 0.98 * before)
+    if not dropped.size:
+        return [f'no onset up to depth {depth[-1]:.4f} R, force {load[-1]:.4f} mu R^2']
+    onset, last = load[:dropped[0]].argmax(), crack > 0.75 * crack[-1]
+    spent = 1 - (1 + (1 - x) / puncture.d) * math.exp((x - 1) / puncture.d)
+    widened = steady_energy(options.law, options.parameter, x)
+    balance = [widened + 2 * math.pi * x * puncture.toughness * share for share in (1, spent)]
+    return [f'onset: depth {depth[onset]:.4f} R = {unit * depth[onset]:.4g} m, force {load[onset]:.4f} mu R^2 = '
+            f'{force * load[onset]:.4g} N, lowest force after it {load[onset:].min():.4f}',
+            f'crack {crack[last][0]:.2f} to {crack[-1]:.2f} R: force {load[last].mean():.4f} mu R^2 = '
+            f'{force * load[last].mean():.4g} N, from {load[last][0]:.4f} to {load[-1]:.4f}',
+            f'balance in a large body {balance[0]:.4f}, with the {spent:.4f} J that the opening R - b spends {balance[1]:.4f}']
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('result')
@@ -237,7 +285,7 @@ def main():
             ('poisson', 0.499, ''), ('parameter', 4.0, "Gent's Jm or Ogden's exponent"), ('needle-radius', 4e-6, 'm: R'),
             ('edge-radius', 0.0, 'm: of a flat needle; 0: a hemisphere'), ('hole', 2e-6, 'm: b, undeformed'),
             ('toughness', 4e-3, 'J/m^2'), ('opening', 0.8e-6, 'm: d'), ('damping', 0.02, 'eta'),
-            ('rim', 0.8e-6, "m: fillet of the hole's rim"), ('size', 0.1, 'R: elements at the wall'), ('fine', 6.0, 'R: depth of the fine elements'),
+            ('flaw', 0.0, 'm: length of the wall from the rim that nothing holds'), ('rim', 0.8e-6, "m: fillet of the hole's rim"), ('size', 0.1, 'R: elements at the wall'), ('fine', 6.0, 'R: depth of the fine elements'),
             ('growth', 1.25, 'of elements away from there'), ('depth', 8.0, 'R: where the run ends'),
             ('crack', 5.0, 'R: cracked length at which the run ends'), ('seconds', 600.0, 's: after which it ends')):
         parser.add_argument('--' + name, type=float, default=default, help=f'{text} (default: {default})')
@@ -249,6 +297,7 @@ def main():
     puncture = Puncture(options)
     print(f'{puncture.model.nbdof()} unknowns')
     rows = puncture.run(options.depth, options.crack)
+    print(*summary(puncture, rows), sep='\n')
     unit, force = options.needle_radius, puncture.mu * options.needle_radius ** 2
     with open(options.result, 'w', newline='', encoding='utf-8') as file:
         table = csv.writer(file)
