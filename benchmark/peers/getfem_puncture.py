@@ -1,18 +1,22 @@
 #!/usr/bin/python3
-"""A rigid needle that pierces a soft cell along a cohesive zone, in GetFEM. Usage: RESULT.csv [--cell-radius M] ... (-h)
+"""A rigid needle that pierces a soft cell along a cohesive zone, in GetFEM. Usage: RESULT.csv [options], see --help
 
-The body is the axisymmetric section of a sphere held at its lower pole, or with --block of a cylinder fixed at its bottom,
-radius and height cell-radius. The needle comes along -z onto the upper pole. What is nearer to the axis than the hole's
-radius b is removed from pole to pole; the hole's wall is held by tractions along r on its undeformed area,
-T = J/d^2 o exp(-o/d) (Xu and Needleman 1994, doi 10.1016/0022-5096(94)90003-5), with the opening o >= 0 (deformed r less
-b) and the toughness J; the largest o of all steps stays in the exponent, so what has opened is weaker for ever. Walls slide
-freely along z. The needle opens the hole as a wedge. In a large body of neo-Hookean rubber the force then tends to
-F = pi R^2 mu ((1 - x^2) ln(1/x) + 2 x J/(mu R)), x = b/R (Shergold and Fleck 2004, doi 10.1098/rspa.2004.1315, for given b).
+The body is the axisymmetric section of a sphere held at its lower pole, or with --block of a cylinder fixed at its
+bottom, radius and height both --cell-radius. The needle comes along -z onto the upper pole. What is nearer to the axis
+than the hole's radius b is removed from pole to pole. Tractions along r hold the hole's wall closed, on its undeformed
+area T = J/d^2 o exp(-o/d) (Xu and Needleman 1994, doi 10.1016/0022-5096(94)90003-5), with opening o >= 0 (deformed r
+less b) and toughness J; the peak is J/(e d). The largest o of all steps stays in the exponent, so an opened wall never
+heals. The wall slides freely along z. The needle opens the hole as a wedge, and the force tends to that of the energy
+balance in a large body, for neo-Hookean rubber F = pi R^2 mu ((1 - x^2) ln(1/x) + 2 x J/(mu R)), x = b/R (Shergold and
+Fleck 2004, doi 10.1098/rspa.2004.1315, here for given b). J counts in it as far as the opening R - b spends it: keep d
+below (R - b)/5.
 
-Equilibrium at a given tip is unstable at the onset. A viscous traction eta J/R do/ds on the wall carries the solution
-through, s the tip's way. RESULT.csv has the depth of the tip below the undeformed pole, m, force, N, cracked length (wall
-with o > 3 d, undeformed), m, and J-equivalent length, m: the wall's energy over 2 pi b J. Inside, R and mu are 1.
-P2-P1: p replaces lambda ln J. A point of the section is X = (r, z); contact is a penalty.
+The onset is no property of J alone: it grows with the peak J/(e d), and a --flaw of 5 d at the rim removed it. It is
+unstable at a given tip. A viscous traction eta J/R do/ds on the wall, s the tip's way, carries the solution
+through; it adds to the force in proportion to eta (--damping). RESULT.csv has the depth of the tip below the
+undeformed pole, m, force, N, undeformed length of the wall with o > 3 d, m, and energy spent over 2 pi b J, m, a flaw
+included. Inside, R and mu are 1. P2-P1: p replaces lambda ln J. A point of the section is X = (r, z); contact is a
+penalty.
 """
 import argparse
 import csv
@@ -29,6 +33,7 @@ SMOOTH = 0.005  # R: way over which the contact's stiffness grows to the penalty
 TOLERANCE, ITERATIONS = 1e-6, 14  # of Newton's method: largest residual, mu R^2
 LARGEST_CHANGE = 0.25  # R: of an iteration
 LARGEST_STEP, SMALLEST_STEP = 0.08, 1e-9  # R: of the tip
+EVEN = 0.4  # R: way from the wall over which elements have one size
 WALL, CONTACT = 1, 2
 SECTION, GRADIENT, HOOP = '*(2*pi*X(1))', '(Id(2)+Grad_u)', '(1+u(1)/X(1))'
 
@@ -60,8 +65,7 @@ def section_grid(options, hole, body):
     def halves(nodes):
         return numpy.sort(numpy.concatenate([nodes, (nodes[1:] + nodes[:-1]) / 2]))
     height = body if options.block else 2 * math.sqrt(body ** 2 - hole ** 2)
-    away = halves(graded(body - hole if options.block else body * math.pi / 4, options.size, 2 * options.size,
-                         options.growth))
+    away = halves(graded(body - hole if options.block else body * math.pi / 4, options.size, EVEN, options.growth))
     down = halves(graded(height, options.size, options.fine, options.growth))
     away, down = numpy.meshgrid(away, down, indexing='ij')
     rim = options.rim / options.needle_radius
@@ -81,8 +85,10 @@ def section_grid(options, hole, body):
         return body * numpy.stack([numpy.sin(angle), numpy.cos(angle)], axis=-1)
 
     wall, x, y = numpy.stack([0 * v + hole, height * (0.5 - v)], axis=-1), a[..., None], v[..., None]  # Coons' patch
-    ends = (1 - x) * ((1 - y) * top(0 * a) + y * top(0 * a) * (1, -1)) + x * ((1 - y) * side(0 * v) + y * side(0 * v + 1))
-    return (1 - y) * top(a) + y * top(a) * (1, -1) + (1 - x) * wall + x * side(v) - ends
+    up, down = top(a), top(a) * (1, -1)
+    left, right = top(0 * a), side(0 * v)
+    ends = (1 - x) * ((1 - y) * left + y * left * (1, -1)) + x * ((1 - y) * right + y * side(0 * v + 1))
+    return (1 - y) * up + y * down + (1 - x) * wall + x * side(v) - ends
 
 
 def make_mesh(grid):
@@ -92,9 +98,10 @@ def make_mesh(grid):
         for j in range(0, len(grid[0]) - 1, 2):
             cell = grid[i:i + 3, j:j + 3]
             if (i < len(grid) / 2) != (j < len(grid[0]) / 2):
-                triangles += [cell[(0, 0, 0, 1, 1, 2), (0, 1, 2, 0, 1, 0)], cell[(2, 2, 2, 1, 1, 0), (2, 1, 0, 2, 1, 2)]]
+                ends = ((0, 0, 0, 1, 1, 2), (0, 1, 2, 0, 1, 0)), ((2, 2, 2, 1, 1, 0), (2, 1, 0, 2, 1, 2))
             else:
-                triangles += [cell[(0, 1, 2, 0, 1, 0), (0, 1, 2, 1, 2, 2)], cell[(0, 1, 2, 1, 2, 2), (0, 0, 0, 1, 1, 2)]]
+                ends = ((0, 1, 2, 0, 1, 0), (0, 1, 2, 1, 2, 2)), ((0, 1, 2, 1, 2, 2), (0, 0, 0, 1, 1, 2))
+            triangles += [cell[nodes] for nodes in ends]
     mesh = getfem.Mesh('empty', 2)
     mesh.add_convex(getfem.GeoTrans('GT_PK(2,2)'), numpy.array(triangles).transpose(2, 1, 0))
     return mesh
@@ -102,8 +109,7 @@ def make_mesh(grid):
 
 def on_side(mesh, points):
     """Returns the faces whose nodes are all among these points."""
-    chosen = mesh.pid_from_coords(points.T)
-    return mesh.faces_from_pid(chosen)
+    return mesh.faces_from_pid(mesh.pid_from_coords(points.T))
 
 
 class Puncture:
@@ -171,6 +177,7 @@ class Puncture:
         self.largest = largest
 
     def integral(self, expression, region):
+        """Returns the integral over a region of the surface."""
         return getfem.asm('generic', self.faces, 0, expression, region, self.model)
 
     def residual(self, state):
@@ -210,11 +217,11 @@ class Puncture:
         return (self.integral(self.lift, CONTACT), self.integral(f'Heaviside(u(1)-{3 * self.d!r})', WALL),
                 self.integral(share, WALL))
 
-    def run(self, last_depth, last_crack, quiet=False):
+    def run(self):
         """Lowers the tip; returns rows of depth, force and lengths, in R and mu R^2."""
         rows, step, way, start = [], 0.01, numpy.zeros_like(self.state), time.time()
         eta = self.options.damping * self.toughness
-        while self.depth < last_depth and time.time() - start < self.options.seconds:
+        while self.depth < self.options.depth and time.time() - start < self.options.seconds:
             self.model.set_variable('centre', self.pole - self.depth - step + self.edge)
             self.model.set_variable('damping', eta / step)
             self.model.set_variable('before', self.state[self.displacements])
@@ -232,10 +239,9 @@ class Puncture:
             self.model.set_variable('reached', self.model.interpolation(self.largest, self.points, WALL))
             way, self.state, self.depth = (state - self.state) / step, state, self.depth + step
             rows.append((self.depth, *self.measures()))
-            if not quiet:
-                print('depth %.4f force %.4f crack %.3f equivalent %.3f' % rows[-1],
-                      f'step {step:.2g} iterations {iterations} {time.time() - start:.0f} s', flush=True)
-            if rows[-1][2] > last_crack:
+            print('depth %.4f force %.4f crack %.3f equivalent %.3f' % rows[-1],
+                  f'step {step:.2g} iterations {iterations} {time.time() - start:.0f} s', flush=True)
+            if rows[-1][2] > self.options.crack:
                 break
             if iterations <= 6:
                 step = min(LARGEST_STEP, step * 1.6)
@@ -258,45 +264,49 @@ def steady_energy(law, parameter, x):
 
 
 def summary(puncture, rows):
-    """Returns lines on the onset, the largest force before the first drop by 2 %, and on the last quarter of the crack."""
+    """Returns lines on the onset (largest force before the first drop by 2 %) and on the crack's last quarter."""
     options, unit, x = puncture.options, puncture.options.needle_radius, puncture.hole
     force = puncture.mu * unit ** 2
     depth, load, _, crack = rows.T
-    before = numpy.maximum.accumulate(load)
-    dropped = numpy.flatnonzero(load < 0.98 * before)
-    if not dropped.size:
-        return [f'no onset up to depth {depth[-1]:.4f} R, force {load[-1]:.4f} mu R^2']
-    onset, last = load[:dropped[0]].argmax(), crack > 0.75 * crack[-1]
+    dropped = numpy.flatnonzero(load < 0.98 * numpy.maximum.accumulate(load))
+    onset, last = load[:dropped[0] if dropped.size else None].argmax(), crack > 0.75 * crack[-1]
     spent = 1 - (1 + (1 - x) / puncture.d) * math.exp((x - 1) / puncture.d)
     widened = steady_energy(options.law, options.parameter, x)
     balance = [widened + 2 * math.pi * x * puncture.toughness * share for share in (1, spent)]
-    return [f'onset: depth {depth[onset]:.4f} R = {unit * depth[onset]:.4g} m, force {load[onset]:.4f} mu R^2 = '
+    name = 'onset' if dropped.size else 'no drop by 2 %, largest force'
+    return [f'{name}: depth {depth[onset]:.4f} R = {unit * depth[onset]:.4g} m, force {load[onset]:.4f} mu R^2 = '
             f'{force * load[onset]:.4g} N, lowest force after it {load[onset:].min():.4f}',
             f'crack {crack[last][0]:.2f} to {crack[-1]:.2f} R: force {load[last].mean():.4f} mu R^2 = '
             f'{force * load[last].mean():.4g} N, from {load[last][0]:.4f} to {load[-1]:.4f}',
-            f'balance in a large body {balance[0]:.4f}, with the {spent:.4f} J that the opening R - b spends {balance[1]:.4f}']
+            f'balance in a large body {balance[0]:.4f}, '
+            f'with the {spent:.4f} J that the opening R - b spends {balance[1]:.4f}']
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('result')
     for name, default, text in (
-            ('cell-radius', 40e-6, 'm'), ('held-radius', 20e-6, 'm: of the patch that is held'), ('young', 3000.0, 'Pa'),
-            ('poisson', 0.499, ''), ('parameter', 4.0, "Gent's Jm or Ogden's exponent"), ('needle-radius', 4e-6, 'm: R'),
+            ('cell-radius', 40e-6, 'm'), ('held-radius', 20e-6, 'm: of the patch that is held'),
+            ('young', 3000.0, 'Pa'), ('poisson', 0.499, ''), ('parameter', 4.0, "Gent's Jm or Ogden's exponent"),
+            ('needle-radius', 4e-6, 'm: R'),
             ('edge-radius', 0.0, 'm: of a flat needle; 0: a hemisphere'), ('hole', 2e-6, 'm: b, undeformed'),
-            ('toughness', 4e-3, 'J/m^2'), ('opening', 0.8e-6, 'm: d'), ('damping', 0.02, 'eta'),
-            ('flaw', 0.0, 'm: length of the wall from the rim that nothing holds'), ('rim', 0.8e-6, "m: fillet of the hole's rim"), ('size', 0.1, 'R: elements at the wall'), ('fine', 6.0, 'R: depth of the fine elements'),
-            ('growth', 1.25, 'of elements away from there'), ('depth', 8.0, 'R: where the run ends'),
-            ('crack', 5.0, 'R: cracked length at which the run ends'), ('seconds', 600.0, 's: after which it ends')):
+            ('toughness', 4e-3, 'J/m^2'), ('opening', 0.4e-6, 'm: d'), ('damping', 0.02, 'eta'),
+            ('flaw', 0.0, 'm: length of the wall from the rim that nothing holds'),
+            ('rim', 0.8e-6, "m: fillet of the hole's rim"), ('size', 0.1, 'R: elements at the wall'),
+            ('fine', 3.0, 'R: depth of the fine elements'), ('growth', 1.35, 'of elements away from there'),
+            ('depth', 8.0, 'R: where the run ends'), ('crack', 1.7, 'R: cracked length at which the run ends'),
+            ('seconds', 600.0, 's: after which it ends')):
         parser.add_argument('--' + name, type=float, default=default, help=f'{text} (default: {default})')
     parser.add_argument('--law', choices=('neo_hookean', 'gent', 'ogden'), default='neo_hookean')
     parser.add_argument('--block', action='store_true', help='a cylinder in place of the sphere')
     parser.add_argument('--bonded', action='store_true', help='the wall stays closed')
     options = parser.parse_args()
+    if not 0 < options.hole < options.needle_radius < options.cell_radius:
+        parser.error('give 0 < --hole < --needle-radius < --cell-radius')
     getfem.util_trace_level(0)
     puncture = Puncture(options)
     print(f'{puncture.model.nbdof()} unknowns')
-    rows = puncture.run(options.depth, options.crack)
+    rows = puncture.run()
     print(*summary(puncture, rows), sep='\n')
     unit, force = options.needle_radius, puncture.mu * options.needle_radius ** 2
     with open(options.result, 'w', newline='', encoding='utf-8') as file:
