@@ -42,6 +42,9 @@ inline constexpr PlausibleRange kFriction{"N", {0, 1}};          ///< of the nee
 inline constexpr PlausibleRange kTension{"N/m", {0, 1}};         ///< of a surface; water: 0.072
 inline constexpr PlausibleRange kStiffness{"N/m", {1e-6, 1e4}};  ///< of a spring, a lever, a layer
 inline constexpr PlausibleRange kAdhesionEnergy{"J/m^2", {0, 1}};
+inline constexpr PlausibleRange kToughness{"J/m^2", {1e-6, 1e6}};
+inline constexpr PlausibleRange kWork{"J", {0, 1e-3}};  ///< of a needle on a cell
+inline constexpr PlausibleRange kFrictionCoefficient{"", {0, 10}};
 inline constexpr PlausibleRange kViscosity{"Pa s", {0, 1e6}};
 inline constexpr PlausibleRange kRelaxationTime{"s", {1e-6, 1e6}};
 inline constexpr PlausibleRange kTime{"s", {0, 1e6}};

@@ -49,6 +49,7 @@ CellSimulatorNode::CellSimulatorNode(Bus& bus)
       contact_(cycle_.output<cell_microinjection::CellContact>("cell/contact")),
       state_(cycle_.output<cell_microinjection::CellState>("cell/state", true)) {
   parameters_.models.live.fixed_period = cycle_.bus().isVirtual();
+  parameters_.models.tell = [](const std::string& text) { ROS_INFO_STREAM(text); };
   const Scene scene = loadScene(parameters_.scene);
   chosen_ = makeCell(scene);
   cell_ = std::make_unique<PlacedCell>(*chosen_.cell);

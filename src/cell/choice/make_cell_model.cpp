@@ -14,6 +14,7 @@
 #include "cell/model/bore_tongue.h"
 #include "cell/model/live_cell.h"
 #include "cell/model/puncturable_cell.h"
+#include "cell/model/solved_branch.h"
 #include "cell/surrogate/surrogate_cell_model.h"
 
 namespace microinjection {
@@ -182,7 +183,19 @@ ChosenCellModel makeCellModel(const Scene& wanted, const std::string& model, con
     chosen.unchangeable = "this one is solved live; " + chosen.unchangeable;
     tracker = std::make_unique<LiveCellModel>(cell, config.live);
   }
-  chosen.cell = std::make_unique<PuncturableCell>(scene, std::move(tracker), tongueOf(scene, config.families));
+  std::optional<PiercedBranch> branch;
+  if (piercedByMechanics(scene)) {
+    branch = storedPiercedBranch(scene, [&](int path, int count) {
+      if (config.tell)
+        config.tell("solves the cell with holes under the needle, once for this cell and tip: path " +
+                    std::to_string(path + 1) + " of " + std::to_string(count));
+    });
+    chosen.change.reset();
+    chosen.unchangeable = "its hole under the needle is solved for this one only";
+    if (!branch->onset()) chosen.description += "; no depth that is solved pierces it";
+  }
+  chosen.cell =
+      std::make_unique<PuncturableCell>(scene, std::move(tracker), tongueOf(scene, config.families), std::move(branch));
   return chosen;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -51,6 +52,7 @@ struct CellModelConfig {
   std::string families;  ///< folder of family files; empty: none
   LiveCellModelConfig live;
   ExplicitCellModelConfig explicit_dynamics;
+  std::function<void(const std::string&)> tell{};  ///< of long work, in words for users; empty: nobody
 };
 
 /// A scene's cell for a moving needle. The way goes in one direction:

@@ -60,6 +60,8 @@ void checkPuncture(const PunctureConfig& puncture, PlausibleCheck& check) {
     check.requireGiven(plausible::kForce, at + "force", layer.force);
     check.requireGiven(plausible::kDepth, at + "depth", layer.depth);
     check.requireGiven(plausible::kStrain, at + "strain", layer.strain);
+    check.requireGiven(plausible::kToughness, at + "toughness", layer.toughness);
+    check.require(plausible::kWork, at + "barrier", layer.barrier);
     check.requireGiven(plausible::kLength, at + "dimple_radius", layer.dimple_radius);
     check.requireGiven(plausible::kStiffness, at + "stiffness", layer.stiffness);
     check.requireGiven(plausible::kLength, at + "gap", layer.gap);
@@ -69,6 +71,7 @@ void checkPuncture(const PunctureConfig& puncture, PlausibleCheck& check) {
     check.require(plausible::kRelaxationTime, at + "aspiration/tension_time", layer.aspiration->tension_time);
   }
   check.require(plausible::kFriction, shaft + "friction", puncture.shaft.friction);
+  check.require(plausible::kFrictionCoefficient, shaft + "coefficient", puncture.shaft.coefficient);
   check.requireGiven(plausible::kStiffness, shaft + "adhesion", puncture.shaft.adhesion);
   check.require(plausible::kStiffness, shaft + "stiffness", puncture.shaft.stiffness);
   check.require(plausible::kViscosity, shaft + "damping", puncture.shaft.damping);

@@ -9,6 +9,17 @@ namespace microinjection {
 
 namespace {
 
+/// Depth, in radii of the tip, at which a hole has taken in the tip's end.
+constexpr double kMouth = 1.5;
+
+PunctureConfig punctureOf(const Scene& scene, const std::optional<PiercedBranch>& branch) {
+  PunctureConfig config = scene.cell.puncture;
+  if (!branch) return config;
+  if (branch->onset()) config.layers.front().force = branch->onset()->force;
+  config.shaft.adhesion += config.shaft.coefficient * branch->wallForce();
+  return config;
+}
+
 /// Of the material that a needle draws in: behind the membranes, the innermost layer.
 BoreSuction::Config boreConfig(const Scene& scene) {
   const std::vector<Scene::Layer>& layers = scene.cell.layers;
@@ -18,13 +29,15 @@ BoreSuction::Config boreConfig(const Scene& scene) {
 
 }  // namespace
 
-PuncturableCell::PuncturableCell(const Scene& scene, std::unique_ptr<CellModel> cell, std::optional<BoreTongue> tongue)
-    : config_(scene.cell.puncture),
+PuncturableCell::PuncturableCell(const Scene& scene, std::unique_ptr<CellModel> cell, std::optional<BoreTongue> tongue,
+                                 std::optional<PiercedBranch> branch)
+    : config_(punctureOf(scene, branch)),
       tip_(scene.needle.tip),
       radius_(scene.radius()),
       cell_(std::move(cell)),
       shaft_(config_.shaft),
-      fading_(config_.relaxation_time) {
+      fading_(config_.relaxation_time),
+      branch_(std::move(branch)) {
   invalid_reason_.reserve(200);
   if (tongue) bore_.emplace(boreConfig(scene), std::move(*tongue));
 }
@@ -115,12 +128,23 @@ TipForce PuncturableCell::contactForce(const Pose& pose) {
   if (failed && push > left * config_.layers.front().force) result.force *= left * config_.layers.front().force / push;
   result.force += fading_.at(pose.tip, pose.time);
   if (!failed) return result;
-  fading_.start(result.force, pose.tip, workTo(result.force, pose.tip), pose.time);
-  const PunctureHoles::Hole opened = {contact->contact_point, 0, {}};
+  PunctureHoles::Hole opened;
+  opened.position = contact->contact_point;
+  Eigen::Vector3d lost = result.force;
+  double returned = workTo(result.force, pose.tip);
+  if (branch_) {
+    const double depth = (opened.position - pose.tip).dot(pose.axis);
+    opened.length = branch_->grown(depth, branch_->onset()->length);
+    const PiercedBranch::State pierced = branch_->at(depth, opened.length);
+    lost -= pierced.force * pose.axis;
+    returned =
+        std::clamp(branch_->whole(depth).energy - pierced.energy - branch_->cost() * opened.length, 0.0, returned);
+  }
+  fading_.start(lost, pose.tip, returned, pose.time);
   const int hole = resealed_ ? *resealed_ : holes_.add(opened);
   holes_[hole] = opened;
   published_holes_.write(holes_);
-  cell_->release();
+  if (!branch_) cell_->release();
   inner_force_used_ = false;
   enter(hole, pose);
   failLayer(pose);
@@ -138,9 +162,11 @@ void PuncturableCell::followRadius() {
 Eigen::Vector3d PuncturableCell::forceInside(const Pose& pose) {
   updateDepth(pose);
   const double age = (pose.time - failed_at_) / config_.relaxation_time;
-  const double length = isThrough() ? (insertion_.depth - next_layer_depth_) * -std::expm1(-std::max(age, 0.0)) : 0;
+  const double behind = branch_ ? std::min(insertion_.depth, holes_[*hole_].length) : insertion_.depth;
+  const double length = isThrough() ? (behind - next_layer_depth_) * -std::expm1(-std::max(age, 0.0)) : 0;
   const Eigen::Vector3d shaft = shaft_.step(pose.tip, pose.axis, length, pose.duration);
   Eigen::Vector3d others = fading_.at(pose.tip, pose.time);
+  if (branch_) others += pierce(pose) * pose.axis;
   if (isThrough()) {
     coverBore(layerCount());
     return others + shaft;
@@ -157,6 +183,14 @@ Eigen::Vector3d PuncturableCell::forceInside(const Pose& pose) {
   return others + shaft;
 }
 
+double PuncturableCell::pierce(const Pose& pose) {
+  PunctureHoles::Hole& hole = holes_[*hole_];
+  const double depth = insertion_.depth;
+  hole.length = branch_->grown(depth, hole.length);
+  cell_->step(pose.tip + std::min(hole.length, depth) * pose.axis, pose.axis, pose.time);
+  return std::clamp(depth / (kMouth * tip_.radius), 0.0, 1.0) * branch_->at(depth, hole.length).force;
+}
+
 void PuncturableCell::enter(int hole, const Pose& pose) {
   hole_ = hole;
   next_layer_depth_ = 0;
@@ -171,6 +205,7 @@ void PuncturableCell::enter(int hole, const Pose& pose) {
 void PuncturableCell::leave(const Pose& pose) {
   fading_.start(last_force_, pose.tip, workTo(last_force_, pose.tip), pose.time);
   if (std::isfinite(config_.resealing_time)) holes_[*hole_].left = pose.time;
+  if (branch_) cell_->release();
   hole_.reset();
   coverBore(-1);
   strength_ = 1;
@@ -183,6 +218,7 @@ void PuncturableCell::failLayer(const Pose& pose) {
   insertion_.layers_punctured = ++holes_[*hole_].layers;
   insertion_.punctured = true;
   failed_at_ = pose.time;
+  if (branch_ && isThrough()) next_layer_depth_ = 0;  // the shaft touches the wall of the whole hole
   if (!isThrough()) next_layer_depth_ = insertion_.depth + config_.layers[holes_[*hole_].layers].gap;
 }
 

@@ -12,6 +12,7 @@
 #include "cell/model/bore_suction.h"
 #include "cell/model/cell_model.h"
 #include "cell/model/fading_force.h"
+#include "cell/model/pierced_branch.h"
 #include "cell/model/puncture_holes.h"
 #include "cell/model/scene.h"
 #include "cell/model/shaft_resistance.h"
@@ -27,17 +28,20 @@ namespace microinjection {
 ///      | `-------- the needle's line meets a hole -----'     |                            |
 ///      `------------------ the tip is off the cell at rest <-+----------------------------'
 ///
-/// The cell behind the hole is springs and friction instead of a solved cell with a crack, because only the force that
-/// breaks the zona is measured (7.5 uN at 45 um, section V.A of the paper): nothing is known that a finer model could
-/// be fitted to. doc/design/mechanics.md, Puncture, lists each part, doc/reference/scene_file.md the keys.
+/// doc/design/mechanics.md, Puncture, lists each part, doc/reference/scene_file.md the keys.
 ///
 /// The outermost layer fails by the force, the indentation or the nominal strain of the inner
-/// cell's contact. That cell then returns to rest, with a hole at the contact point. Each further
-/// layer is a linear spring along the pipette from the point where the tip meets it. It was dented
-/// together with the earlier layers and lies its gap ahead of the tip when they fail. It stays
-/// there while the needle is in the cell; after the needle has left, all layers are at their gaps
-/// below the surface. In the cell, ShaftResistance acts on the shaft. The cytoplasm begins at the
-/// innermost layer.
+/// cell's contact. That cell then returns to rest, with a hole at the contact point, and springs and friction are all
+/// that acts on the needle: only the force that breaks the zona is measured (7.5 uN at 45 um, section V.A of the
+/// paper).
+///
+/// With a PiercedBranch the outermost layer is a solid of known toughness. It fails at the force of the branch's onset,
+/// and the needle then feels the branch's force along the pipette: the hole grows with the needle, the dent stays as
+/// deep as the branch has it, and its wall rubs on the shaft. The branch is that of a needle on the axis; elsewhere its
+/// depth is counted along the pipette. Each further layer is a linear spring along the pipette from the point where the
+/// tip meets it. It was dented together with the earlier layers and lies its gap ahead of the tip when they fail. It
+/// stays there while the needle is in the cell; after the needle has left, all layers are at their gaps below the
+/// surface. In the cell, ShaftResistance acts on the shaft. The cytoplasm begins at the innermost layer.
 ///
 /// A tip in a hole is in the cell until it leaves through the hole, or beside it off the cell. A
 /// needle line that passes within the tip's radius of a hole meets the next intact layer there;
@@ -54,7 +58,10 @@ class PuncturableCell : public CellModel {
  public:
   /// `cell`: the model of the same scene's cell without a puncture. @pre scene.validate() does not throw
   /// `tongue`: of a scene whose needle has a bore, see solveBoreTongue(). Without it nothing is drawn in.
-  PuncturableCell(const Scene& scene, std::unique_ptr<CellModel> cell, std::optional<BoreTongue> tongue = {});
+  /// `branch`: of a scene whose outermost layer has a toughness, see solvePiercedBranch(). Without it that layer does
+  /// not fail.
+  PuncturableCell(const Scene& scene, std::unique_ptr<CellModel> cell, std::optional<BoreTongue> tongue = {},
+                  std::optional<PiercedBranch> branch = {});
 
   /// O(1), apart from the inner cell; does not allocate or lock.
   TipForce step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time) override;
@@ -87,6 +94,8 @@ class PuncturableCell : public CellModel {
   TipForce contactForce(const Pose& pose);
   void followRadius();  ///< moves the holes with a surface whose radius has changed
   Eigen::Vector3d forceInside(const Pose& pose);
+  double pierce(
+      const Pose& pose);  ///< N along the pipette, of the branch, whose hole grows; and the dent that is drawn
   void enter(int hole, const Pose& pose);
   void leave(const Pose& pose);
   void failLayer(const Pose& pose);
@@ -116,6 +125,7 @@ class PuncturableCell : public CellModel {
   double failed_at_ = 0;           ///< s, of the last failure in this hole; negative infinity before
   bool inner_force_used_ = false;  ///< the last force was computed by the inner cell
   BoreLine line_;
+  std::optional<PiercedBranch> branch_;
   std::optional<BoreSuction> bore_;
   std::optional<AspiratedMembrane> membrane_;  ///< of the layer before the mouth that suction can break
   int covering_ = -1;                          ///< that layer; the count of layers: cytoplasm; -1: none

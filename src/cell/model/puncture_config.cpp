@@ -8,13 +8,21 @@
 namespace microinjection {
 namespace {
 
+void readToughness(ConfigReader& reader, PunctureConfig::Layer& layer) {
+  readQuantity(reader, "toughness", layer.toughness, Range::positive(), "J/m^2");
+  readQuantity(reader, "barrier", layer.barrier, Range::nonNegative(), "J");
+  if (reader.has("barrier") && !reader.has("toughness"))
+    reader.error("barrier", "must be left out: it belongs to toughness only");
+}
+
 void readLayer(ConfigReader reader, bool outermost, PunctureConfig::Layer& layer) {
   reader.text("name", layer.name, ConfigReader::kRequired);
   readQuantity(reader, "force", layer.force, Range::positive(), "N");
   readQuantity(reader, "depth", layer.depth, Range::positive(), "m");
   readQuantity(reader, "strain", layer.strain, Range::positive(), "");
-  const int criteria = reader.has("force") + reader.has("depth") + reader.has("strain");
-  if (criteria != 1) reader.error("name", "must have one of force (N), depth (m), strain");
+  readToughness(reader, layer);
+  const int criteria = reader.has("force") + reader.has("depth") + reader.has("strain") + reader.has("toughness");
+  if (criteria != 1) reader.error("name", "must have one of force (N), depth (m), strain, toughness (J/m^2)");
   if (reader.has("strain")) {
     readQuantity(reader, "dimple_radius", layer.dimple_radius, Range::positive(), "m", ConfigReader::kRequired);
   } else if (reader.has("dimple_radius")) {
@@ -25,6 +33,8 @@ void readLayer(ConfigReader reader, bool outermost, PunctureConfig::Layer& layer
       reader.error(key, "must be left out: the outermost layer is the cell that the needle touches");
     }
   }
+  if (!outermost && reader.has("toughness"))
+    reader.error("toughness", "must be left out: only the outermost layer is pierced by mechanics");
   if (reader.has("aspiration")) layer.aspiration = AspirationConfig::read(reader.section("aspiration"));
   if (outermost) return;
   readQuantity(reader, "stiffness", layer.stiffness, Range::positive(), "N/m", ConfigReader::kRequired);
@@ -33,6 +43,7 @@ void readLayer(ConfigReader reader, bool outermost, PunctureConfig::Layer& layer
 
 void readShaft(const ConfigReader& reader, PunctureConfig::Shaft& shaft) {
   readQuantity(reader, "friction", shaft.friction, Range::nonNegative(), "N");
+  readQuantity(reader, "coefficient", shaft.coefficient, Range::nonNegative(), "");
   readQuantity(reader, "adhesion", shaft.adhesion, Range::nonNegative(), "N/m");
   readQuantity(reader, "stiffness", shaft.stiffness, Range::positive(), "N/m");
   readQuantity(reader, "damping", shaft.damping, Range::nonNegative(), "Pa s");
@@ -44,6 +55,8 @@ void checkMembrane(const PunctureConfig::Layer& layer, const std::string& path, 
   errors.require(layer.force > 0, path + "force", layer.force, " N", "positive (N)");
   errors.require(layer.depth > 0, path + "depth", layer.depth, " m", "positive (m)");
   errors.require(layer.strain > 0, path + "strain", layer.strain, "", "positive");
+  errors.require(layer.toughness > 0, path + "toughness", layer.toughness, " J/m^2", "positive (J/m^2)");
+  errors.require(Range::nonNegative(), path + "barrier", layer.barrier, " J");
   errors.require(std::isinf(layer.strain) || (std::isfinite(layer.dimple_radius) && layer.dimple_radius > tip_radius),
                  path + "dimple_radius", layer.dimple_radius, " m", "above needle/tip/radius");
   errors.require(Range::nonNegative(), path + "gap", layer.gap, " m");
@@ -75,9 +88,15 @@ void PunctureConfig::read(ConfigReader reader) {
       readLayer(layer, layers.size() == 1, layers.back());
     }
     if (layers.empty()) reader.error("layers", "must have at least one layer");
-    if (reader.has("force")) reader.error("force", "must be left out where there are layers: each has its own");
+    for (const char* key : {"force", "toughness", "barrier"}) {
+      if (reader.has(key)) reader.error(key, "must be left out where there are layers: each has its own");
+    }
+  } else if (reader.has("force") && reader.has("toughness")) {
+    reader.error("toughness", "must be left out where the force of the puncture is given");
   } else if (reader.has("force")) {
     readQuantity(reader, "force", layers.emplace_back().force, Range::positive(), "N");
+  } else if (reader.has("toughness") || reader.has("barrier")) {
+    readToughness(reader, layers.emplace_back());
   }
   readShaft(reader.section("shaft"), shaft);
   readQuantity(reader, "relaxation_time", relaxation_time, Range::positive(), "s");
@@ -96,6 +115,7 @@ void PunctureConfig::check(double tip_radius, ConfigErrors& errors) const {
     if (layers[i].aspiration) layers[i].aspiration->check(at + "aspiration/", errors);
   }
   errors.require(Range::nonNegative(), path + "shaft/friction", shaft.friction, " N");
+  errors.require(Range::nonNegative(), path + "shaft/coefficient", shaft.coefficient, "");
   errors.require(Range::nonNegative(), path + "shaft/adhesion", shaft.adhesion, " N/m");
   errors.require(Range::nonNegative(), path + "shaft/damping", shaft.damping, " Pa s");
   errors.require(Range::nonNegative(), path + "shaft/lateral_stiffness", shaft.lateral_stiffness, " N/m");

@@ -14,12 +14,15 @@ namespace microinjection {
 /// Failure of a cell's membranes under the needle, and the resistance of its shaft afterwards: a
 /// scene's cell/puncture.
 struct PunctureConfig {
-  /// A membrane. It fails when one of the three limits is reached; the others are infinite.
+  /// A membrane. It fails when one of its limits is reached; the others are infinite.
   struct Layer {
     std::string name = "zona";
     double force = std::numeric_limits<double>::infinity();   ///< N along the pipette
     double depth = std::numeric_limits<double>::infinity();   ///< m, indentation by the tip
     double strain = std::numeric_limits<double>::infinity();  ///< nominal, see strainAt()
+    /// J/m^2, of crack: the solid is pierced by mechanics (PiercedBranch), of the outermost layer only; infinite: not.
+    double toughness = std::numeric_limits<double>::infinity();
+    double barrier = 0;        ///< J, with toughness: beside the crack, to begin a hole
     double dimple_radius = 0;  ///< m, with strain: outer radius of the dent, from the pipette's axis
     double stiffness = 0;      ///< N/m along the pipette; 0 for the outermost layer, whose force is the cell's
     double gap = 0;            ///< m ahead of the tip when the previous layer fails; 0 for the outermost layer
@@ -43,6 +46,7 @@ struct PunctureConfig {
     double stiffness = 0.3;        ///< N/m along the pipette, before the shaft slides
     double damping = 0;            ///< N s/m per m of shaft in the cytoplasm (Pa s), against its motion
     double lateral_stiffness = 0;  ///< N/m, of the hole's rim, against motion across the pipette
+    double coefficient = 0;        ///< Coulomb's, with toughness: of the wall that presses on the shaft
   };
 
   std::vector<Layer> layers;  ///< outermost first; none: the cell cannot be punctured

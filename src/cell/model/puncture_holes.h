@@ -13,6 +13,7 @@ class PunctureHoles {
   struct Hole {
     Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m, of the tip at first contact
     int layers = 0;                                      ///< number of failed layers there, outermost first
+    double length = 0;                                   ///< m, undeformed, of a hole by mechanics; else 0
     std::optional<double> left;                          ///< s, when the needle left it; none: the needle is in it
   };
 

@@ -48,6 +48,26 @@ class ServeNeedle : public testing::Test {
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
+TEST_F(ServeNeedle, ACellPiercedByMechanicsIsSolvedOnceAndSaysSo) {
+  Scene tough = pipette();
+  tough.cell.layers[0].outer_radius = 12e-6;
+  tough.holding_pipette.contact_radius = 6e-6;
+  tough.cell.puncture = {};
+  tough.cell.puncture.layers.emplace_back().toughness = 0.02;
+  int told = 0;
+  CellModelConfig config;
+  config.tell = [&](const std::string& text) { told += has(text, "holes under the needle"); };
+  const ChosenCellModel served = makeCellModel(tough, "live", config, "a.yaml");
+  EXPECT_GE(told, 5);
+  EXPECT_FALSE(served.change);
+  EXPECT_EQ(served.cell->layers().size(), 1u);
+  told = 0;
+  makeCellModel(tough, "live", config, "a.yaml");
+  EXPECT_EQ(told, 0) << "the paths are in the cache";
+  tough.needle.tip = {"disc", 3e-6, 0};
+  EXPECT_TRUE(has(refusal(tough, "live"), "cell/puncture/layers/0/toughness: needle/tip/shape must be hemisphere"));
+}
+
 /// A cell that suction holds is served as one that is glued where the lip touches it, and that is said.
 TEST_F(ServeNeedle, AHeldCellIsServedAsGluedAndSaysHowFarThatIsOff) {
   Scene held = pipette();

@@ -45,6 +45,27 @@ TEST(PunctureConfig, ReadsEveryKey) {
   EXPECT_EQ(config.relaxation_time, 1e-3);
 }
 
+TEST(PunctureConfig, ReadsToughness) {
+  const PunctureConfig shorthand =
+      parseScene(with("{toughness: 2.5, barrier: 1e-12, shaft: {coefficient: 0.3}}"), "scene.yaml").cell.puncture;
+  ASSERT_EQ(shorthand.layers.size(), 1u);
+  EXPECT_EQ(shorthand.layers[0].toughness, 2.5);
+  EXPECT_EQ(shorthand.layers[0].barrier, 1e-12);
+  EXPECT_TRUE(std::isinf(shorthand.layers[0].force));
+  EXPECT_EQ(shorthand.shaft.coefficient, 0.3);
+  const PunctureConfig layers = parseScene(with("{layers: [{name: zona, toughness: 4}]}"), "scene.yaml").cell.puncture;
+  EXPECT_EQ(layers.layers[0].toughness, 4);
+}
+
+TEST(PunctureConfig, ToughnessIsOfTheOutermostLayerAndAlone) {
+  expectIn(errorsOf(with("{force: 1e-6, toughness: 1}")), {"cell/puncture/toughness = 1: must be left out"});
+  expectIn(errorsOf(with("{barrier: 1e-12}")), {"cell/puncture/barrier = 1e-12: must be left out"});
+  expectIn(errorsOf(with("{toughness: 0}")), {"cell/puncture/toughness = 0: must be a number in (0, inf) J/m^2"});
+  expectIn(errorsOf(with("{layers: [{name: zona, toughness: 1, force: 1e-6}, {name: b, toughness: 1, stiffness: 1}]}")),
+           {"cell/puncture/layers/0/name = zona: must have one of force",
+            "cell/puncture/layers/1/toughness = 1: must be left out"});
+}
+
 TEST(PunctureConfig, IsStrict) {
   expectIn(
       errorsOf(with("{layers: [{name: zona, gap: 1e-6, stiffness: 1, force: 1e-6, depth: 1e-6}, {force: -1}, "

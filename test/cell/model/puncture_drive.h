@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "cell/model/lock_step.h"
@@ -35,10 +36,11 @@ inline PunctureConfig oocyte() {
 /// A needle that is driven into a puncturable spring.
 class PunctureDrive {
  public:
-  explicit PunctureDrive(const PunctureConfig& puncture, double rate = 1000) : step_(1 / rate) {
+  explicit PunctureDrive(const PunctureConfig& puncture, double rate = 1000, std::optional<PiercedBranch> branch = {})
+      : step_(1 / rate) {
     auto inner = std::make_unique<SpringCell>(kRadius, kStiffness);
     spring = inner.get();
-    cell = std::make_unique<PuncturableCell>(sceneOf(puncture), std::move(inner));
+    cell = std::make_unique<PuncturableCell>(sceneOf(puncture), std::move(inner), std::nullopt, std::move(branch));
   }
 
   /// On a straight line at `speed`, m/s; returns the force's z at the end, N.

@@ -1,0 +1,224 @@
+// Puncture by mechanics: steady penetration against its closed balance of energy, onset and branches of four cells, the
+// paper's.
+
+#include <boost/math/special_functions/fpclassify.hpp>
+
+#include <boost/math/quadrature/tanh_sinh.hpp>
+#include <boost/math/tools/minima.hpp>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+#include <string>
+
+#include "benchmark/bench_main.h"
+#include "benchmark/common/printed_table.h"
+#include "cell/model/pierced_cell.h"
+#include "cell/model/solved_branch.h"
+
+namespace microinjection {
+namespace {
+
+constexpr double kShear = 1;  // Pa
+constexpr double kTip = 3e-6;
+
+MaterialConfig softSolid(const std::string& model, double parameter, double poisson_ratio, double shear = kShear) {
+  MaterialConfig material;
+  material.model = model;
+  material.poisson_ratio = poisson_ratio;
+  material.young_modulus = 2 * (1 + poisson_ratio) * shear;
+  if (model == "ogden") material.ogden_exponent = parameter;
+  if (model == "gent") material.gent_limit = parameter;
+  return material;
+}
+
+/// W over the shear modulus of a sheared circle with stretches s, 1 / s, 1.
+double closedEnergy(const std::string& model, double parameter, double s) {
+  const double first = s * s + 1 / (s * s) - 2;
+  if (model == "neo_hookean") return first / 2;
+  if (model == "gent") return first < parameter ? -parameter / 2 * std::log1p(-first / parameter) : HUGE_VAL;
+  return 2 / (parameter * parameter) * (std::pow(s, parameter) + std::pow(s, -parameter) - 2);
+}
+
+/// p / mu of an incompressible block: the hole's energy by quadrature over the stretch s of its circles. With
+/// rho^2 (s^2 - 1) = 1 - x^2, the area 2 pi rho d rho is 2 pi (1 - x^2) s / (s^2 - 1)^2 ds.
+double closedPressure(const std::string& model, double parameter, double toughness) {
+  boost::math::quadrature::tanh_sinh<double> rule;
+  const auto energy = [&](double x) {
+    if (!std::isfinite(closedEnergy(model, parameter, 1 / x))) return HUGE_VAL;
+    const auto density = [&](double t) {  // t = s - 1, which is small far away
+      const double s = 1 + t, square = t * (2 + t);
+      return closedEnergy(model, parameter, s) * 2 * (1 - x * x) * s / (square * square);
+    };
+    return rule.integrate(density, 1e-4, 1 / x - 1) + 0.5 * (1 - x * x) * 1e-4;  // W is 2 t^2 mu near t = 0
+  };
+  const auto total = [&](double x) { return energy(x) + 2 * x * toughness; };
+  double low = 0.01, best = HUGE_VAL, at = 0.5;
+  for (double x = low; x < 0.999; x += 0.01) {
+    if (total(x) < best) {
+      best = total(x);
+      at = x;
+    }
+  }
+  return boost::math::tools::brent_find_minima(total, at - 0.0099, std::min(at + 0.01, 0.9999), 24).second;
+}
+
+void steady(PrintedTable& table) {
+  table.add("study,law,parameter,toughness_over_mu_R,pressure_over_mu,closed,apart_percent,hole_over_R\n");
+  struct Law {
+    const char* name;
+    double parameter;
+  };
+  for (const Law& law : {Law{"neo_hookean", 2}, {"ogden", 3}, {"ogden", 5}, {"ogden", 9}, {"gent", 10}, {"gent", 50}}) {
+    for (const double toughness : {0.1, 1.0, 10.0, 50.0}) {
+      const DeepPenetration deep(softSolid(law.name, law.parameter, 0.49999));
+      const SteadyPenetration found = deep.steady(toughness * kShear);
+      const double closed = closedPressure(law.name, law.parameter, toughness), own = found.force_in / M_PI / kShear;
+      char row[200];
+      std::snprintf(row, sizeof row, "steady,%s,%g,%g,%.5g,%.5g,%.4f,%.4f\n", law.name, law.parameter, toughness, own,
+                    closed, 100 * (own / closed - 1), found.hole_radius);
+      table.add(row);
+    }
+  }
+}
+
+struct SoftCell {
+  const char* name;
+  const char* model;
+  double parameter, radius, held, toughness;  // radii in tip radii; over mu R
+};
+
+constexpr SoftCell kCells[] = {{"A", "neo_hookean", 0, 10, 3, 1},
+                               {"B", "neo_hookean", 0, 8, 4, 0.4},
+                               {"C", "ogden", 4, 8, 3, 2},
+                               {"D", "gent", 10, 10, 3, 2}};
+
+Scene sceneOf(const SoftCell& cell, double shear = 1e3) {
+  Scene scene;
+  scene.cell.layers[0].outer_radius = cell.radius * kTip;
+  scene.cell.material() = softSolid(cell.model, cell.parameter, 0.49, shear);
+  scene.needle.tip = {"hemisphere", kTip, 0};
+  scene.needle.contact.mode = "sliding";
+  scene.holding_pipette.contact_radius = cell.held * kTip;
+  scene.cell.puncture.layers.emplace_back().toughness = cell.toughness * shear * kTip;
+  return scene;
+}
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+/// What the needle feels on its way in, along the crack that grows with it.
+void writeWay(PrintedTable& table, const char* name, const PiercedBranch& branch, double force) {
+  const PiercedBranch::Onset onset = *branch.onset();
+  double length = onset.length;
+  for (double depth = 0; depth < onset.depth + 6 * kTip; depth += kTip / 4) {
+    const bool in = depth >= onset.depth;
+    if (in) length = branch.grown(depth, length);
+    const PiercedBranch::State state = in ? branch.at(depth, length) : branch.whole(depth);
+    char row[200];
+    std::snprintf(row, sizeof row, "way,%s,%.4g,%.4g,%.4g,%.4g\n", name, depth / kTip, state.force / force,
+                  in ? length / kTip : 0, branch.whole(depth).force / force);
+    table.add(row);
+  }
+}
+
+void branches(PrintedTable& table, double level) {
+  table.add("study,cell,depth_over_R,force,hole_over_R,force_of_the_whole_cell\n");
+  table.add(
+      "study,cell,law,parameter,radius,held,toughness_over_mu_R,level,hole_over_R,onset_depth_over_R,onset_force,"
+      "pierced_"
+      "force,steady_force,closed_steady_force,seconds\n");
+  for (const SoftCell& cell : kCells) {
+    const Scene scene = sceneOf(cell);
+    const double unit = M_PI * kTip * kTip * 1e3, begin = now();  // forces over pi R^2 mu
+    const PiercedBranch branch = solvePiercedBranch(scene, level);
+    const double took = now() - begin;
+    const SteadyPenetration deep = steadyPenetration(scene);
+    if (!branch.onset()) {
+      table.add(std::string("branches,") + cell.name + ",no onset on the path that is solved\n");
+      continue;
+    }
+    const PiercedBranch::Onset onset = *branch.onset();
+    double on = onset.depth, length = onset.length;
+    for (int i = 0; i < 12; ++i) length = branch.grown(on += kTip / 4, length);
+    char row[300];
+    std::snprintf(row, sizeof row, "branches,%s,%s,%g,%g,%g,%g,%g,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.0f\n", cell.name,
+                  cell.model, cell.parameter, cell.radius, cell.held, cell.toughness, level, deep.hole_radius,
+                  onset.depth / kTip, onset.force / unit, onset.pierced_force / unit,
+                  branch.at(on, length).force / unit, deep.force_in * kTip * kTip / unit, took);
+    table.add(row);
+    writeWay(table, cell.name, branch, unit);
+  }
+}
+
+/// The paper's cell under a hemisphere of 3 um that sticks, as in config/cells/mouse_oocyte_pipette.yaml: punctured at
+/// 7.5 uN and 45 um (section V.A). One point cannot tell modulus and stiffening apart: for each exponent the modulus is
+/// that with this force there, and the toughness that with the onset there.
+void paper(PrintedTable& table, double level) {
+  constexpr double kForce = 7.5e-6, kDepth = 45e-6;
+  constexpr int kSteps = 5;
+  table.add(
+      "study,exponent,young_modulus,toughness,hole_radius,onset_depth,onset_force,pierced_force,force_5_um_on,steady_"
+      "force,force_out\n");
+  for (const double exponent : {6.0, 8.0}) {
+    Scene scene = sceneOf({"paper", "ogden", exponent, 28e-6 / kTip, 10e-6 / kTip, 1});
+    scene.needle.contact.mode = "sticking";
+    PiercedCellConfig config;
+    config.material = scene.cell.material();
+    config.radius = 28e-6;
+    config.held_radius = 10e-6;
+    config.tip_radius = kTip;
+    config.hole_length = 0;
+    config.sticking = true;
+    config.level = level;
+    PiercedCell whole(config);
+    if (!whole.advance(kDepth)) throw std::runtime_error("the whole cell: " + whole.reason());
+    scene.cell.material().young_modulus *= kForce / whole.force();
+    const DeepPenetration deep(scene.cell.material(), 28e-6 / kTip);
+    double low = 0.3, high = 1;  // steady force over that of the puncture
+    for (int i = 0; i < kSteps; ++i) {
+      const double share = (low + high) / 2;
+      scene.cell.puncture.layers.front().toughness = kTip * deep.toughnessFor(share * kForce / (kTip * kTip));
+      const SteadyPenetration steady = steadyPenetration(scene);
+      const PiercedBranch branch = solvePiercedBranch(scene, level);
+      const auto onset = branch.onset();
+      double after = NAN;
+      if (onset) {
+        double length = onset->length, depth = onset->depth;
+        for (int k = 0; k < 20; ++k) length = branch.grown(depth += 0.25e-6, length);
+        after = branch.at(depth, length).force;
+      }
+      char row[300];
+      std::snprintf(row, sizeof row, "paper,%g,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g\n", exponent,
+                    scene.cell.material().young_modulus, scene.cell.puncture.layers.front().toughness,
+                    steady.hole_radius * kTip, onset ? onset->depth : NAN, onset ? onset->force : NAN,
+                    onset ? onset->pierced_force : NAN, after, steady.force_in * kTip * kTip,
+                    steady.force_out * kTip * kTip);
+      table.add(row);
+      (onset && onset->depth < kDepth ? low : high) = share;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace microinjection
+
+int main(int argc, char** argv) {
+  using namespace microinjection;
+  std::string studies = "steady,branches";
+  double level = 0;
+  namespace po = boost::program_options;
+  po::options_description more;
+  more.add_options()("studies", po::value(&studies)->default_value(studies), "steady, branches, paper");
+  more.add_options()("level", po::value(&level)->default_value(level), "of the meshes: each halves the elements");
+  return benchMain(
+      argc, argv, "puncture: energy balance of a long hole, onset of the puncture and the force behind it",
+      [&] {
+        const auto asked = [&](const char* study) { return studies.find(study) != std::string::npos; };
+        PrintedTable table;
+        if (asked("steady")) steady(table);
+        if (asked("branches")) branches(table, level);
+        if (asked("paper")) paper(table, level);
+        return table.text();
+      },
+      more);
+}

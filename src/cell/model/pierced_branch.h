@@ -1,0 +1,81 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+namespace microinjection {
+
+struct Scene;
+
+/// Equilibria of a cell with a hole under a needle, and the crack that makes the hole longer (doc/design/puncture.md).
+///
+/// The needle's end is at the depth d below the undeformed pole, the hole's undeformed length is l. The energies Pi0(d)
+/// of the whole cell and Pi(d, l) of cells with holes of a few lengths are known. The force on the needle is the
+/// derivative by d. The crack costs c = 2 pi b J for each metre. It grows where the energy that it releases exceeds its
+/// cost,
+///
+///     -dPi/dl at a fixed d  >=  c,
+///
+/// and it begins where some length has a smaller sum of energy and cost than the whole cell has. Between both there is
+/// a barrier, because a hole that is shorter than the tip is round is not opened by the shaft: so the force falls at
+/// the onset.
+///
+/// Between the lengths Pi is interpolated at a fixed d - l, the tip's place beyond the bottom of the undeformed hole,
+/// on which it depends strongly while it depends on l almost linearly. Forces and releases are derivatives of the one
+/// interpolant, hence conservative. All functions are O(number of lengths) and do not allocate.
+class PiercedBranch {
+ public:
+  struct Knot {
+    double beyond = 0;  ///< m, d - l
+    double force = 0;   ///< N, on the needle, out of the cell
+    double energy = 0;  ///< J
+  };
+  struct Hole {
+    double length = 0;        ///< m, undeformed
+    std::vector<Knot> knots;  ///< beyond rises
+  };
+  struct State {
+    double force = 0, energy = 0;  ///< N, J
+    double release = 0;            ///< N: J per metre of crack, at a fixed needle
+  };
+  struct Onset {
+    double depth = 0, force = 0;           ///< m, N, of the whole cell
+    double length = 0, pierced_force = 0;  ///< m, N, of the hole that has been made
+  };
+
+  /// @param whole of the cell without a hole. @param holes of rising lengths, two or more. Each path has two knots or
+  /// more. @param cost N: J per metre of crack, >= 0. @param barrier J, beside that cost, to begin a hole.
+  /// Throws std::invalid_argument otherwise.
+  /// @param wall_force N/m, of the wall on each metre of shaft, the sum of its pressure around it
+  PiercedBranch(std::vector<Knot> whole, std::vector<Hole> holes, double cost, double barrier = 0,
+                double wall_force = 0);
+
+  State whole(double depth) const;  ///< its release is 0
+
+  /// Constant forces are taken below the first knot of a path, and a constant stiffness beyond its last one; shorter
+  /// holes than the first have its energy less the release along the shaft.
+  State at(double depth, double length) const;
+
+  /// None: the whole cell's path ends before.
+  const std::optional<Onset>& onset() const { return onset_; }
+
+  /// m, of a hole that was `length` long while the needle went on to `depth`. It does not become shorter.
+  double grown(double depth, double length) const;
+
+  double shortest() const { return holes_.front().length; }  ///< m
+  double longest() const { return holes_.back().length; }    ///< m
+  double cost() const { return cost_; }                      ///< N
+  double wallForce() const { return wall_force_; }           ///< N/m
+  const std::vector<Hole>& holes() const { return holes_; }
+
+ private:
+  std::optional<Onset> findOnset(double barrier) const;
+
+  std::vector<Knot> whole_;
+  std::vector<Hole> holes_;
+  double cost_, wall_force_;
+  double furthest_ = 0;  ///< m, beyond the bottom, that the furthest of the paths reaches
+  std::optional<Onset> onset_;
+};
+
+}  // namespace microinjection

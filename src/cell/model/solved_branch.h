@@ -1,0 +1,28 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "cell/model/pierced_branch.h"
+#include "cell/model/scene.h"
+#include "cell/penetration/deep_penetration.h"
+
+namespace microinjection {
+
+/// The scene's outermost layer is pierced by mechanics: its toughness is given, not the force at which it fails.
+bool piercedByMechanics(const Scene& scene);
+
+/// What a long hole through the scene's cell costs. @pre piercedByMechanics(scene)
+SteadyPenetration steadyPenetration(const Scene& scene);
+
+/// Solves the scene's cell whole and with holes of several lengths (PiercedCell); half a minute on one core. The hole
+/// has the radius that is best for steady penetration. `level`: of the meshes. `report` is called before each of the
+/// paths with their number and count.
+/// @throws ConfigError for a scene that cannot be pierced by mechanics, and says why
+PiercedBranch solvePiercedBranch(const Scene& scene, double level = 0,
+                                 const std::function<void(int, int)>& report = {});
+
+/// The same from the user's cache, or solved and stored there.
+PiercedBranch storedPiercedBranch(const Scene& scene, const std::function<void(int, int)>& report = {});
+
+}  // namespace microinjection

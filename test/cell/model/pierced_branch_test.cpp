@@ -1,0 +1,89 @@
+#include "cell/model/pierced_branch.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+#include "cell/model/spring_branch.h"
+
+namespace microinjection {
+namespace {
+
+constexpr double kOpenedHole = SpringBranch().opened, kBottom = SpringBranch().spring, kCrack = SpringBranch().cost;
+
+std::vector<PiercedBranch::Knot> springPath(double length) { return SpringBranch().path(length); }
+
+PiercedBranch springBranch(double cost = kCrack, double barrier = 0) {
+  SpringBranch made;
+  made.cost = cost;
+  made.barrier = barrier;
+  return made.make();
+}
+
+/// Where (e + c) d - c^2 / (2 k) + barrier is k/2 d^2.
+double closedOnset(double cost, double barrier) {
+  const double sum = kOpenedHole + cost;
+  return (sum + std::sqrt(sum * sum - cost * cost + 2 * kBottom * barrier)) / kBottom;
+}
+
+TEST(PiercedBranch, FailsWhereTheHoleHasLessEnergyWithItsCost) {
+  for (const double barrier : {0.0, 3e-12}) {
+    const PiercedBranch tough = springBranch(kCrack, barrier);
+    ASSERT_TRUE(tough.onset());
+    const double depth = closedOnset(kCrack, barrier);
+    EXPECT_NEAR(tough.onset()->depth, depth, 1e-3 * depth);
+    EXPECT_NEAR(tough.onset()->force, kBottom * depth, 1e-3 * kBottom * depth);
+    EXPECT_NEAR(tough.onset()->length, depth - kCrack / kBottom, 1e-3 * depth);
+    EXPECT_NEAR(tough.onset()->pierced_force, kOpenedHole + kCrack, 1e-3 * kCrack)
+        << "the force falls to the steady one";
+    EXPECT_GT(tough.onset()->force, 1.2 * tough.onset()->pierced_force);
+  }
+  EXPECT_FALSE(springBranch(20e-6).onset()) << "the whole cell's path ends before";
+}
+
+TEST(PiercedBranch, ForceAndReleaseAreSlopesOfTheEnergy) {
+  const PiercedBranch tough = springBranch();
+  constexpr double kStep = 1e-9;
+  for (const double length : {1.5e-6, 3.2e-6, 6.9e-6, 20e-6}) {
+    for (const double depth : {length - 3.3e-6, length + 0.4e-6, length + 11e-6}) {
+      const PiercedBranch::State here = tough.at(depth, length);
+      const double by_depth =
+          (tough.at(depth + kStep, length).energy - tough.at(depth - kStep, length).energy) / (2 * kStep);
+      const double by_length =
+          (tough.at(depth, length + kStep).energy - tough.at(depth, length - kStep).energy) / (2 * kStep);
+      EXPECT_NEAR(here.force, by_depth, 1e-5 * kCrack);
+      EXPECT_NEAR(here.release, -by_length, 1e-5 * kCrack);
+      EXPECT_NEAR(here.force, kOpenedHole + kBottom * std::max(depth - length, 0.0), 1e-9 * kCrack);
+    }
+  }
+}
+
+TEST(PiercedBranch, TheHoleGrowsWithTheNeedleAndNeverShrinks) {
+  const PiercedBranch tough = springBranch();
+  double length = tough.onset()->length;
+  const double start = tough.onset()->depth;
+  for (double depth = start; depth < start + 20e-6; depth += 0.5e-6) {
+    length = tough.grown(depth, length);
+    EXPECT_NEAR(length, depth - kCrack / kBottom, 1e-9);
+    EXPECT_NEAR(tough.at(depth, length).force, kOpenedHole + kCrack, 1e-3 * kCrack);
+  }
+  EXPECT_EQ(tough.grown(5e-6, length), length);
+  EXPECT_NEAR(tough.at(length - 20e-6, length).force, kOpenedHole, 1e-9 * kCrack) << "below the first knot";
+}
+
+TEST(PiercedBranch, RefusesPathsThatDoNotRise) {
+  const std::vector<PiercedBranch::Knot> twice = {{0, 0, 0}, {0, 1e-6, 0}};
+  EXPECT_THROW(PiercedBranch(twice, {{1e-6, springPath(1e-6)}, {2e-6, springPath(2e-6)}}, kCrack),
+               std::invalid_argument);
+  EXPECT_THROW(PiercedBranch(springPath(0), {{2e-6, springPath(2e-6)}, {1e-6, springPath(1e-6)}}, kCrack),
+               std::invalid_argument);
+  EXPECT_THROW(PiercedBranch(springPath(0), {{1e-6, springPath(1e-6)}}, kCrack), std::invalid_argument);
+  EXPECT_THROW(springBranch(std::numeric_limits<double>::quiet_NaN()), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace microinjection
