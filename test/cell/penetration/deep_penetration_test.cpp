@@ -25,7 +25,7 @@ TEST(HoleExpansion, IsTheClosedFormOfANeoHookeanBlock) {
     const HoleExpansion::State state = hole.at(x);
     const double square = 1 - x * x;
     EXPECT_NEAR(state.energy / M_PI, square * std::log(1 / x), 1e-4 * square * std::log(1 / x)) << x;
-    // Of the circle at r: the integral of mu (r / rho - rho^3 / r^3 ...) ends at ln(1/x) + (1 - x^2) / 2.
+    // The integral of mu ((r / rho)^2 - (rho / r)^2) over ln r, from the shaft outwards.
     EXPECT_NEAR(state.pressure, std::log(1 / x) + square / 2, 2e-3 * (std::log(1 / x) + square / 2)) << x;
   }
 }
