@@ -64,6 +64,14 @@ void LayerSection::flag(const std::string& key, std::optional<bool>& value) {
   }
 }
 
+void LayerSection::number(const std::string& key, std::optional<double>& value, const Range& range) {
+  const YAML::Node node = reader_.any(key);
+  if (!node.IsDefined()) return;
+  value.reset();
+  if (node.IsScalar() && node.Scalar() == kAuto) return note(key);
+  number(key, value.emplace(), range);
+}
+
 void LayerSection::number(const std::string& key, double& value, const Range& range) {
   note(key);
   reader_.number(key, value, range);

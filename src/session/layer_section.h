@@ -25,6 +25,7 @@ class LayerSection {
   void flag(const std::string& key, bool& value);
   void flag(const std::string& key, std::optional<bool>& value);  ///< true, false, or auto: no value
   void number(const std::string& key, double& value, const Range& range);
+  void number(const std::string& key, std::optional<double>& value, const Range& range);  ///< auto: no value
   void integer(const std::string& key, int& value, const Range& range);
   void numbers(const std::string& key, std::array<double, 6>& value);
 

@@ -227,6 +227,7 @@ std::string Session::text() const {
   text("record/history", record.history);
   text("record/training", record.training);
   text("notebook", notebook);
+  rate ? number("rate", *rate) : text("rate", "auto");
   setParameter(keys, "overrides", overrides);
   return parameterText(keys);
 }

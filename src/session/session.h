@@ -4,6 +4,7 @@
 
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -130,8 +131,9 @@ struct Session {
   Camera camera;
   Display display;
   Record record;
-  std::string notebook;  ///< path; empty: none
-  YAML::Node overrides;  ///< {NODE: {KEY: VALUE}}, and {rig: {start_height: ...}}
+  std::string notebook;        ///< path; empty: none
+  std::optional<double> rate;  ///< 1/s, the largest of any loop; none: as each node's configuration says
+  YAML::Node overrides;        ///< {NODE: {KEY: VALUE}}, and {rig: {start_height: ...}}
 
   SessionPlaces places;
   std::vector<std::string> files;  ///< that were read: the session's, its bases, and those of overrides

@@ -40,6 +40,7 @@ class Planner {
     addRecorders();
     if (live()) addReadiness();
     for (NodePlan& node : plan_.nodes) {
+      limitRate(node);
       const YAML::Node fitted = parameterAt(fit.parameters, node.name);
       if (fitted.IsDefined()) mergeParameters(node.parameters, fitted);
       addDeviceRemaps(node.remaps);
@@ -61,6 +62,14 @@ class Planner {
     }
     if (needle && holder)
       setParameter(holder->parameters, "other/tilt", parameterAt(needle->parameters, "pipette_tilt"));
+  }
+
+  /// Of a loop that would be faster than the session's.
+  void limitRate(NodePlan& node) const {
+    const YAML::Node rate = parameterAt(node.parameters, "rate");
+    const bool is_loop = rate.IsDefined() || node.program == "teleoperation_follower";
+    if (session_.rate && is_loop && (!rate.IsDefined() || rate.as<double>() > *session_.rate))
+      setParameter(node.parameters, "rate", numberValue(*session_.rate));
   }
 
   using Remaps = std::map<std::string, std::string>;

@@ -128,6 +128,7 @@ void readSessionKeys(ConfigReader& reader, const std::string& folder, SessionDra
   display.choice("console", session.display.console, choices.consoles);
   readRecord(section.section("record"), session.record);
   section.path("notebook", session.notebook, {"", kAuto});
+  section.number("rate", session.rate, Range::closed(50, 5000));
   section.overrides("overrides");
 }
 

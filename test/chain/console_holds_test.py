@@ -11,7 +11,7 @@ import console_eye
 from console_user import ConsoleUser
 from live_chain import Master
 
-SESSION = ("session:=icsi", "mode:=semi_automatic")
+SESSION = ("session:=icsi", "mode:=semi_automatic", "set:=rate=200")  # Hz: not each machine keeps 1 kHz
 # Which button is pressed, and where it leads to.
 STEPS = (("Hold", "hold"), ("Approach", "contact"), ("Indent", "indent"), ("Aspirate", "punctured"), ("Inject", "punctured"),
          ("Withdraw", "release"), ("Release", "idle"))

@@ -213,7 +213,7 @@ class LinkTest(HostileTest):
         alone: who pulls that means it."""
         link = parameters("link")
         patient = {key: TIMEOUT for key in ("needle", "predicted", "measured", "controller")}
-        bridge = parameters("haptic_bridge", rate=RATE, timeouts={"hand": TIMEOUT, **patient}, link=link["link"])
+        bridge = parameters("haptic_bridge", timeouts={"hand": TIMEOUT, **patient}, link=link["link"])
         follower = {"link": link["link"], "rate": RATE, "timeouts": patient}
         self.begin({"haptic_bridge": bridge, "teleoperation_follower": follower, "link_emulator": {}})
         plug = "/link/plugged"

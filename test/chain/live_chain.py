@@ -13,12 +13,11 @@ from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseStamped, WrenchStamped
 from sensor_msgs.msg import Joy
 
-from killable_nodes import PACKAGE, PATIENCE, KillableNodes, parameters, rig
+from killable_nodes import PACKAGE, PATIENCE, RATE, KillableNodes, parameters, rig
 from messages import pose, position
 from processes import free_port
 
-RATE = 200  # Hz, of all nodes: a machine that stalls must not hold the needle
-TIMEOUT = 1.0  # s, of all inputs
+TIMEOUT = 1.0  # s, of all inputs: a machine that stalls must not hold the needle
 
 
 def until(condition, what):
@@ -52,12 +51,12 @@ def chain_parameters():
     patient = {key: TIMEOUT for key in ("hand", "needle", "predicted", "measured", "controller")}
     cell = {"scene": str(PACKAGE / "config/cells/mouse_oocyte_pipette.yaml"), "families": str(PACKAGE / "config/families")}
     return {
-        "haptic_bridge": parameters("haptic_bridge", rate=RATE, timeouts=patient),
-        "injection_controller": parameters("injection_controller", rate=RATE, auto_enable=True, input_timeout=TIMEOUT),
-        "micromanipulator": {**rig(), "rate": RATE, "command_timeout": TIMEOUT},
+        "haptic_bridge": parameters("haptic_bridge", timeouts=patient),
+        "injection_controller": parameters("injection_controller", auto_enable=True, input_timeout=TIMEOUT),
+        "micromanipulator": {**rig(), "command_timeout": TIMEOUT},
         "injector": parameters("injector"),
-        "cell_simulator": parameters("cell_simulator", rate=RATE, state_rate=5, needle="true", needle_timeout=TIMEOUT, **cell),
-        "force_sensor": parameters("force_sensor", rate=RATE, input_timeout=TIMEOUT)}
+        "cell_simulator": parameters("cell_simulator", state_rate=5, needle="true", needle_timeout=TIMEOUT, **cell),
+        "force_sensor": parameters("force_sensor", input_timeout=TIMEOUT)}
 
 
 class Hand:

@@ -18,7 +18,7 @@ from in_folder import InFolder  # noqa: E402
 
 TOOL = ROOT / "src/tools/session_on_hosts.py"
 PATIENCE = 60  # s of wall time; only what hangs takes that long
-ARGUMENTS = ("haptic:=none", "display:=false", "set:=injection.start_when_enabled=false")
+ARGUMENTS = ("haptic:=none", "display:=false", "set:=rate=200 injection.start_when_enabled=false")
 HOSTS = """master: rig
 hosts:
   rig: {address: 10.88.0.1}

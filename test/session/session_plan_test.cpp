@@ -335,6 +335,18 @@ TEST_F(SessionPlanTest, OverridesHaveTheLastWordForEachNode) {
   EXPECT_FALSE(takesPart(session, "vision")) << "it has overrides, and does not take part";
 }
 
+TEST_F(SessionPlanTest, TheSessionsRateIsTheLargestOfAnyLoop) {
+  const Names arguments = {"rate:=250", "link.scheme:=wave", "holder:=sim", "overrides.cell_simulator.rate:=500"};
+  const SessionPlan limited = plan(arguments);
+  for (const char* loop : {"virtual_hand", "haptic_bridge", "teleoperation_follower", "injection_controller",
+                           "micromanipulator", "force_sensor"})
+    EXPECT_EQ(at(limited, loop, "rate"), "250") << loop;
+  EXPECT_EQ(at(limited, "holder", "rate"), "200") << "slower by itself";
+  EXPECT_EQ(at(limited, "cell_simulator", "rate"), "500") << "an override has the last word";
+  EXPECT_EQ(at(plan(), "micromanipulator", "rate"), "1000");
+  EXPECT_EQ(at(plan({"rate:=auto"}), "micromanipulator", "rate"), "1000");
+}
+
 TEST_F(SessionPlanTest, KeepsOnlyWhatIsWanted) {
   SessionPlan session = plan({"display.rviz:=true"});
   session.keepOnly({"display", "rviz", "force_sensor_frame"});

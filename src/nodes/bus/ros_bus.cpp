@@ -270,10 +270,12 @@ void RosBus::runSteps() {
     // The node does not wait for an input that is late by half a period.
     deadline =
         driven_ ? now + ros::WallDuration((triggered_ ? 1.5 : 1.0) * period_) : deadline + ros::WallDuration(period_);
-    if (secondsBetween(deadline, now) > 10 * period_) deadline = now;  // after a stall: do not catch up
+    if (deadline <= now) deadline = now + ros::WallDuration(period_);  // after a delay: do not catch up
     triggered_ = false;
     sampled_.queue.callAvailable();
     step_(this->now());
+    // Where the processors do too much: a loop in real time that never sleeps would leave nothing to the ROS master.
+    if (secondsBetween(now, steady()) > period_) pause(period_);
   }
 }
 

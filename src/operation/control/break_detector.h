@@ -45,9 +45,10 @@ class FallDetector {
   /// @param deviation N, of a sample; @param share of the force, in (0, 1); @param false_rate a sample, in (0, 0.01)
   FallDetector(double deviation, double share, double false_rate);
   bool step(double force);  ///< N; returns whether it has fallen
-  bool couldFall() const;   ///< the force is large enough for a fall to be seen
-  double before() const;    ///< N, mean before the fall; @pre 40 samples
-  double now() const;       ///< N, mean of the last 8; @pre 8 samples
+  bool isReady() const { return recent_.full(); }
+  bool couldFall() const;  ///< the force is large enough for a fall to be seen
+  double before() const;   ///< N, mean before the fall; @pre 40 samples
+  double now() const;      ///< N, mean of the last 8; @pre 8 samples
   void reset() { recent_.clear(); }
 
  private:
@@ -91,7 +92,8 @@ class BreakDetector {
   /// Whether a break could be told by what has been watched so far: the force is above its noise, an image has shown
   /// the interface, or the flow is measured.
   bool canTell() const;
-  void resume();  ///< the alarm was false: the suction goes on
+  bool knowsForce() const { return force_.isReady(); }  ///< has enough readings to see a fall
+  void resume();                                        ///< the alarm was false: the suction goes on
 
  private:
   struct Mean {

@@ -5,11 +5,12 @@
 namespace microinjection {
 namespace {
 
-constexpr double kRest = 0.15;   ///< s before the suction, in which the witnesses see the membrane at rest
-constexpr double kSilent = 0.2;  ///< s, past which an injector that does not report is lost
-constexpr double kObeys = 0.5;   ///< s, within which an injector draws as it is told
-constexpr double kEnough = 0.5;  ///< share of the wanted suction that is drawn by then
-constexpr double kLeap = 0.1;    ///< s, after which a tongue rests that was drawn in at once
+constexpr double kRest = 0.15;      ///< s before the suction, in which the witnesses see the membrane at rest
+constexpr double kLongestRest = 1;  ///< s, for the force of a slow loop: its samples come one a step
+constexpr double kSilent = 0.2;     ///< s, past which an injector that does not report is lost
+constexpr double kObeys = 0.5;      ///< s, within which an injector draws as it is told
+constexpr double kEnough = 0.5;     ///< share of the wanted suction that is drawn by then
+constexpr double kLeap = 0.1;       ///< s, after which a tongue rests that was drawn in at once
 constexpr int kMostAlarms = 5;
 
 }  // namespace
@@ -22,7 +23,7 @@ SuctionRun::Status SuctionRun::step(const std::optional<double>& force,
   const std::optional<double> flow = injector ? std::optional(-injector->flow) : std::nullopt;
   if (confirming_) return confirm(force, interface, dt);
   time_ += dt;
-  const bool rests = time_ <= kRest;
+  const bool rests = drawing_ == 0 && (time_ <= kRest || (force && !detector_.knowsForce() && time_ <= kLongestRest));
   if (rests && injector && !injector->busy) balance_ = injector->pressure;
   // A step of the suction moves a tongue at once: no run of the interface.
   const bool leaps = goal_.rate == 0 && !rests && drawing_ < kLeap;
@@ -32,6 +33,7 @@ SuctionRun::Status SuctionRun::step(const std::optional<double>& force,
     return Status::kUnderWay;
   }
   if (drawing_ == 0 && !detector_.canTell()) return Status::kBlind;
+  if (drawing_ == 0) time_ = kRest;
   drawing_ += dt;
   suction_ = goal_.rate > 0 ? std::min(goal_.largest, suction_ + goal_.rate * dt) : goal_.largest;
   if (suction_ < goal_.largest) time_ = kRest;  // the time at the largest suction has not begun
@@ -73,7 +75,7 @@ void SuctionRun::rest() {
 }
 
 std::optional<double> SuctionRun::pressure() const {
-  if (confirming_ || time_ < kRest || suction_ == 0 || !balance_) return std::nullopt;
+  if (confirming_ || suction_ == 0 || !balance_) return std::nullopt;
   return *balance_ - suction_;
 }
 

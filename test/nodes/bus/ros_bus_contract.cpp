@@ -86,6 +86,21 @@ TEST(RosBus, WhoWasFrozenHasNotLostTheMasterMeanwhile) {
   EXPECT_EQ(lost, 0);
 }
 
+TEST(RosBus, ALoopWhoseStepsTakeLongerThanItsPeriodLeavesTheProcessorAPeriodEach) {
+  constexpr double kPeriod = 0.01, kStep = 0.03;  // s
+  RosBus bus;
+  std::vector<ros::SteadyTime> begins, ends;
+  bus.setStep(kPeriod, [&](const ros::Time&) {
+    begins.push_back(ros::SteadyTime::now());
+    while ((ros::SteadyTime::now() - begins.back()).toSec() < kStep) {
+    }
+    ends.push_back(ros::SteadyTime::now());
+    if (ends.size() == 5) bus.stop();
+  });
+  bus.run();
+  for (std::size_t i = 1; i < begins.size(); ++i) EXPECT_GE((begins[i] - ends[i - 1]).toSec(), kPeriod) << i;
+}
+
 }  // namespace
 
 INSTANTIATE_TYPED_TEST_SUITE_P(RosBus, BusContract, RosPair);

@@ -11,9 +11,10 @@
 namespace microinjection {
 
 /// A needle that follows its set-point with a lag while input.rig_hold is empty, in front of an elastic cell whose
-/// membrane fails at a force and then drags on the needle; an injector that works when it is asked to. Steps of 1 ms.
+/// membrane fails at a force and then drags on the needle; an injector that works when it is asked to.
 struct SpringRig {
   static constexpr double kStep = 1e-3;  ///< s
+  double period = kStep;                 ///< s, of the controller
 
   double surface = 28e-6;        ///< m, height of the cell's top
   double stiffness = 0.1;        ///< N/m
@@ -66,7 +67,7 @@ struct SpringRig {
     const bool asked = controller.pulse() && injector_works;
     const double pressure = asked ? controller.pulse()->pressure : 0;
     lowest_pressure = std::min(lowest_pressure, pressure);
-    if (pressure > 0) volume += 1e-15 * kStep;
+    if (pressure > 0) volume += 1e-15 * period;
     if (break_suction > 0 && pressure <= -break_suction && depth() > 0 && !punctured) {
       punctured = true;
       punctured_at = depth();
@@ -83,7 +84,7 @@ struct SpringRig {
   }
 
   void senseHolder(double wanted) {
-    holder_pressure += (1 - std::exp(-kStep / 20e-3)) * (wanted - holder_pressure);
+    holder_pressure += (1 - std::exp(-period / 20e-3)) * (wanted - holder_pressure);
     const bool holds = cell_is_there && (sticks || holder_pressure < -50);
     input.holder =
         HolderReport{holds ? holder_pressure : 0, holder_pressure, holds ? 0 : 1e-11 * holder_pressure / 1e3};
@@ -93,12 +94,12 @@ struct SpringRig {
   }
 
   void move() {
-    if (setpoint && input.rig_hold.empty()) tip += (1 - std::exp(-kStep / lag)) * (*setpoint - tip);
+    if (setpoint && input.rig_hold.empty()) tip += (1 - std::exp(-period / lag)) * (*setpoint - tip);
   }
 
   void step(InjectionController& controller) {
     sense(controller);
-    setpoint = controller.step(input, kStep);
+    setpoint = controller.step(input, period);
     move();
   }
 

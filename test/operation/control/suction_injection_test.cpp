@@ -31,6 +31,19 @@ TEST_F(SuctionInjectionTest, BreaksTheMembraneInAShallowDentAndInjects) {
   EXPECT_GT(rig_.lowest_pressure, -420) << "the suction ends with the break";
 }
 
+/// The force's readings come one a step.
+TEST_F(SuctionInjectionTest, ASlowLoopWaitsForItsWitness) {
+  for (const double rate : {50, 200, 500, 2000}) {
+    rig_ = SpringRig();
+    rig_.period = 1 / rate;
+    rig_.break_suction = 400;
+    enable();
+    rig_.run(controller_);
+    EXPECT_EQ(controller_.result().outcome, InjectionOutcome::kInjected) << rate << ": " << controller_.result().reason;
+    EXPECT_NEAR(controller_.result().break_suction, 400, 25 + 50 * 500 / rate) << rate;
+  }
+}
+
 TEST_F(SuctionInjectionTest, AMembraneThatWithstandsItIsHeldOrBrokenByForce) {
   for (const BreakBy by : {BreakBy::kSuction, BreakBy::kSuctionThenForce}) {
     rig_ = SpringRig();
