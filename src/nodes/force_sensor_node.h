@@ -50,7 +50,7 @@ class ForceSensorNode {
     double averaging = 0.5;
     bool quiet = false;  ///< its noise is below its step, so that it may repeat a reading
     std::string frame = "force_sensor";
-    double frame_timeout = 10;
+    double frame_timeout = 60;
     std::string file;  ///< of tare and gain; empty: not kept
     ForceSensorConfig simulated;
     SerialPortConfig port;

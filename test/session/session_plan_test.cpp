@@ -340,7 +340,7 @@ TEST_F(SessionPlanTest, TheSessionsRateIsTheLargestOfAnyLoop) {
   const SessionPlan limited = plan(arguments);
   for (const char* loop : {"virtual_hand", "haptic_bridge", "teleoperation_follower", "injection_controller",
                            "micromanipulator", "force_sensor"})
-    EXPECT_EQ(at(limited, loop, "rate"), "250") << loop;
+    EXPECT_EQ(at(limited, loop, "rate"), "250.0") << loop;
   EXPECT_EQ(at(limited, "holder", "rate"), "200") << "slower by itself";
   EXPECT_EQ(at(limited, "cell_simulator", "rate"), "500") << "an override has the last word";
   EXPECT_EQ(at(plan(), "micromanipulator", "rate"), "1000");

@@ -1,7 +1,10 @@
 #include "nodes/runtime/frames.h"
 
+#include <ros/console.h>
+
 #include <tf2/exceptions.h>
 
+#include <algorithm>
 #include <sstream>
 
 #include "base/errors.h"
@@ -48,13 +51,21 @@ std::optional<Eigen::Isometry3d> FrameListener::find(const std::string& parent, 
 }
 
 Eigen::Isometry3d waitForFrame(Bus& bus, const std::string& parent, const std::string& frame, double timeout) {
+  constexpr double kSilent = 5;  // s; a computer that starts a session may be busy
   const FrameListener listener(bus);
-  if (bus.waitUntil([&] { return listener.find(parent, frame).has_value(); }, timeout))
-    return *listener.find(parent, frame);
-  std::ostringstream message;
-  message << "tf has had no transform from frame '" << frame << "' to '" << parent << "' for " << timeout
-          << " s: rig_frames, robot_state_publisher or a static_transform_publisher must publish it";
-  throw ConfigError(message.str());
+  const auto found = [&] { return listener.find(parent, frame).has_value(); };
+  const auto missing = [&](double since) {
+    std::ostringstream message;
+    message << "tf has had no transform from frame '" << frame << "' to '" << parent << "' for " << since
+            << " s: rig_frames, robot_state_publisher or a static_transform_publisher must publish it";
+    return message.str();
+  };
+  if (!bus.waitUntil(found, std::min(kSilent, timeout)) && timeout > kSilent) {
+    ROS_WARN_STREAM(missing(kSilent));
+    bus.waitUntil(found, timeout - kSilent);
+  }
+  if (const auto pose = listener.find(parent, frame)) return *pose;
+  throw ConfigError(missing(timeout));
 }
 
 }  // namespace microinjection
