@@ -126,6 +126,32 @@ def check_scene_keys(project, text):
     return [f'the key {key} is not in the tables' for key in sorted(keys) if not re.search(rf'[`/]{key}[`/]', text)]
 
 
+# In the comment of a number of a scene, or of a key that it is under.
+ORIGIN = re.compile(r'Table |section |\[\d+\]|of the paper|measured|computed|fitted|chosen|assumed|illustrative')
+CHOICES = {'offset', 'requirements'}  # of who uses the cell
+
+
+def check_origins(project):
+    """Each number of a scene of the package says whether it was published (where), computed, fitted, assumed or is illustrative."""
+    problems = []
+    for path in sorted(path for path in project.files if path.startswith('config/cells/')):
+        lines = project.text(path).splitlines()
+
+        def walk(node, told):
+            for key, value in node.value if isinstance(node, yaml.MappingNode) else [(None, item) for item in node.value]:
+                line = (key or value).start_mark.line
+                known = told or bool(key and ORIGIN.search(lines[line].partition('#')[2]))
+                if key and key.value in CHOICES:
+                    continue
+                if isinstance(value, yaml.ScalarNode):
+                    if re.fullmatch(r'[-+]?[\d.]+(e[-+]?\d+)?', value.value) and not known:
+                        problems.append(f'{path}, line {line + 1}: {lines[line].strip()}: where is it from?')
+                else:
+                    walk(value, known)
+        walk(yaml.compose('\n'.join(lines)), False)
+    return problems
+
+
 def check_defaults(project):
     """What a document calls the default of a session ("the default cell, `NAME`") is that of config/sessions/default.yaml."""
     keys = {'cell': 'cell', 'rig': 'rig/name', 'hand': 'hand/device', 'motion': 'hand/motion', 'model': 'model'}

@@ -11,8 +11,8 @@ from pathlib import Path
 
 from documents_checker import Checker
 from documents_project import Project
-from documents_tables import (check_arguments, check_commands, check_defaults, check_fitted, check_nodes, check_parameters,
-                              check_scene_keys, check_topics, fitted_keys, reachable)
+from documents_tables import (check_arguments, check_commands, check_defaults, check_fitted, check_nodes, check_origins,
+                              check_parameters, check_scene_keys, check_topics, fitted_keys, reachable)
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -53,6 +53,9 @@ class TheDocuments(unittest.TestCase):
 
     def test_state_the_defaults_of_a_session(self):
         self.assert_none(check_defaults(self.project))
+
+    def test_scenes_say_where_their_numbers_are_from(self):
+        self.assert_none(check_origins(self.project))
 
     def test_have_every_topic(self):
         self.assert_table(check_topics, 'doc/reference/topics_and_frames.md')
