@@ -5,6 +5,7 @@
 
 #include <boost/math/quadrature/tanh_sinh.hpp>
 #include <boost/math/tools/minima.hpp>
+#include <boost/math/tools/roots.hpp>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -150,6 +151,35 @@ void branches(PrintedTable& table, double level) {
   }
 }
 
+/// The dent in which cell A, with a shear modulus of an oocyte, breaks under the pulses of a piezo.
+void piezo(PrintedTable& table, double level) {
+  table.add("study,viscosity,amplitude,rise_time,pulse_force,dent,dent_without\n");
+  const PiercedBranch branch = solvePiercedBranch(sceneOf(kCells[0], 6e3), level);
+  const PiercedBranch::Onset onset = *branch.onset();
+  for (const double viscosity : {1e-3, 0.2, 1.0}) {
+    for (const double amplitude : {0.5e-6, 2e-6}) {
+      for (const double rise_time : {10e-6, 50e-6, 200e-6}) {
+        const auto missing = [&](double dent) {
+          const double force = branch.whole(dent).force;
+          const StrokeResistance resistance{kTip, viscosity, force / dent};
+          return onset.force - force - resistance.largestForce({amplitude, rise_time});
+        };
+        const double shallow = 1e-3 * kTip;
+        double dent = 0;
+        if (missing(shallow) > 0) {
+          const auto found =
+              boost::math::tools::bisect(missing, shallow, onset.depth, boost::math::tools::eps_tolerance<double>(20));
+          dent = found.first;
+        }
+        char row[200];
+        std::snprintf(row, sizeof row, "piezo,%g,%g,%g,%.3g,%.3g,%.3g\n", viscosity, amplitude, rise_time,
+                      onset.force - branch.whole(dent).force, dent, onset.depth);
+        table.add(row);
+      }
+    }
+  }
+}
+
 /// The paper's cell under a hemisphere of 3 um that sticks, as in config/cells/mouse_oocyte_pipette.yaml: punctured at
 /// 7.5 uN and 45 um (section V.A). One point cannot tell modulus and stiffening apart: for each exponent the modulus is
 /// that with this force there, and the toughness that with the onset there.
@@ -204,11 +234,11 @@ void paper(PrintedTable& table, double level) {
 
 int main(int argc, char** argv) {
   using namespace microinjection;
-  std::string studies = "steady,branches";
+  std::string studies = "steady,branches,piezo";
   double level = 0;
   namespace po = boost::program_options;
   po::options_description more;
-  more.add_options()("studies", po::value(&studies)->default_value(studies), "steady, branches, paper");
+  more.add_options()("studies", po::value(&studies)->default_value(studies), "steady, branches, piezo, paper");
   more.add_options()("level", po::value(&level)->default_value(level), "of the meshes: each halves the elements");
   return benchMain(
       argc, argv, "puncture: energy balance of a long hole, onset of the puncture and the force behind it",
@@ -217,6 +247,7 @@ int main(int argc, char** argv) {
         PrintedTable table;
         if (asked("steady")) steady(table);
         if (asked("branches")) branches(table, level);
+        if (asked("piezo")) piezo(table, level);
         if (asked("paper")) paper(table, level);
         return table.text();
       },

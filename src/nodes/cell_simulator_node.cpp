@@ -16,9 +16,9 @@ constexpr double kInjectorTimeout = 0.1;  ///< s, past which there is no suction
 
 const char* const CellSimulatorNode::kHelp =
     "cell_simulator: the finite-element cell under the needle.\n"
-    "In: /needle/measured_cp or /needle/true_cp, /cell/set_parameters, of a needle with a bore /injector/state, with a "
-    "holder\n"
-    "/holder/state and /holder_rig/measured_cp or true_cp. Out: /cell/predicted_cf, /cell/contact, /cell/state, of a "
+    "In: /needle/measured_cp or /needle/true_cp, /needle/piezo_pulses, /cell/set_parameters, of a needle with a bore\n"
+    "/injector/state, with a holder /holder/state and /holder_rig/measured_cp or true_cp. Out: /cell/predicted_cf, "
+    "/cell/contact, /cell/state, of a "
     "needle with a bore\n"
     "/cell/bore, with a holder /cell/hold and /cell/seal.\n"
     "Service: ~set_cell_parameters.\n";
@@ -60,6 +60,7 @@ CellSimulatorNode::CellSimulatorNode(Bus& bus)
         &cycle_.input<cell_microinjection::InjectorState>("injector/state", InputPhase::kSampled, kInjectorTimeout);
     bore_ = &cycle_.output<cell_microinjection::BoreState>("cell/bore");
   }
+  if (can_be_punctured_) piezo_.emplace(cycle_.bus());
   if (parameters_.holding.holder) makeHolding(scene);
   using Thread = CellStatePublisher::Thread;
   const auto thread = cycle_.bus().isVirtual() ? Thread::kOfTheStep : Thread::kOwn;
@@ -99,6 +100,8 @@ void CellSimulatorNode::step(const Cycle::Tick& tick) {
     if (needle) needle->translation().z() -= cell_->height();  // which CellHold does not know
     cell_->follow(holding_->step(tick, needle, cell_->insertion().inside));
   }
+  const std::optional<PiezoPulse> pulse = piezo_ ? piezo_->due(tick.now) : std::nullopt;
+  if (pulse) cell_->strike(*pulse);
   if (pose) {
     force = cell_->step(pose->translation(), pose->linear().col(2), tick.now.toSec());
     if (holding_) force.force = holding_->forceOnNeedle(force.force);

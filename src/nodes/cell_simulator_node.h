@@ -16,14 +16,16 @@
 #include "nodes/cell/cell_holding.h"
 #include "nodes/cell/cell_parameter_server.h"
 #include "nodes/cell/cell_state_publisher.h"
+#include "nodes/cell/piezo_train.h"
 #include "nodes/runtime/cycle.h"
 
 namespace microinjection {
 
 /// The cell under the needle, see makeCellModel. An invalid force has stamp 0.
 ///
-/// In:  /needle/measured_cp or /needle/true_cp (PoseStamped, tip in `world`); of a needle with a bore
-///      /injector/state (InjectorState, the pressure in it); with a holder those of CellHolding
+/// In:  /needle/measured_cp or /needle/true_cp (PoseStamped, tip in `world`); of a cell with membranes that of
+/// PiezoTrain;
+///      of a needle with a bore /injector/state (InjectorState, the pressure in it); with a holder those of CellHolding
 /// Out: /cell/predicted_cf (WrenchStamped, of the cell on the tip, in `world`), /cell/contact (CellContact, on change
 ///      and each 20 ms), /cell/state (CellState); of a needle with a bore /cell/bore (BoreState, 200 Hz); with a
 ///      holder those of CellHolding
@@ -74,6 +76,7 @@ class CellSimulatorNode {
   double bore_volume_ = 0;  ///< m^3, then
   cell_microinjection::CellContact last_contact_;
   bool can_be_punctured_ = false;
+  std::optional<PiezoTrain> piezo_;
   std::string invalid_reason_;  ///< why the last force was invalid; else empty
   // Last members: their threads use the others.
   std::unique_ptr<CellStatePublisher> state_publisher_;

@@ -24,7 +24,7 @@ from rviz_view import RvizError, RvizView
 from session_monitor import Progress
 
 ROOT = Path(os.environ.get('MICROINJECTION_ROOT') or Path(__file__).resolve().parents[2])
-CELL = 'mouse_oocyte_injection'
+CELL = 'mouse_oocyte_tough'  # its puncture follows from its toughness
 MOTION = ROOT / 'config' / 'hand_motions' / 'puncture_and_inject.yaml'
 OUT = ('idle', 'approach')  # states of an injection whose needle is out of the cell
 RESULTS = ('force_depth.csv', 'force_depth.png', 'scene.png', 'session.bag', 'summary.yaml')
@@ -172,7 +172,7 @@ class Demo:
         self._check_injection(monitor)
 
     def _check_injection(self, monitor):
-        told = (f'{monitor.punctures} membranes punctured, {1e15 * monitor.volume:.2f} pL injected, the needle is in '
+        told = (f'membranes punctured: {monitor.punctures}, {1e15 * monitor.volume:.2f} pL injected, the needle is in '
                 f'"{monitor.injection}"')
         say(told)
         whole = monitor.punctures > 0 and monitor.volume > 0 and monitor.injection in OUT

@@ -192,7 +192,7 @@ ChosenCellModel makeCellModel(const Scene& wanted, const std::string& model, con
     });
     chosen.change.reset();
     chosen.unchangeable = "its hole under the needle is solved for this one only";
-    if (!branch->onset()) chosen.description += "; no depth that is solved pierces it";
+    chosen.description += "; " + describePuncture(*branch, scene);
   }
   chosen.cell =
       std::make_unique<PuncturableCell>(scene, std::move(tracker), tongueOf(scene, config.families), std::move(branch));

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "cell/model/piezo_stroke.h"
+
 namespace microinjection {
 
 struct Scene;
@@ -105,6 +107,8 @@ class CellModel {
 
   /// The pressure in the needle's bore from the next step on. Models of needles without a bore do not feel it.
   virtual void setBoreLine(const BoreLine& /*line*/) {}
+  /// The needle gives one pulse in the next step. Models without membranes do not feel it.
+  virtual void strike(const PiezoPulse& /*pulse*/) {}
   virtual const Bore* bore() const { return nullptr; }  ///< at the last step; null: the needle has no bore
 
   /// Removes the contact after a membrane has failed. The next step() finds a new one.

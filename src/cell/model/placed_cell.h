@@ -32,6 +32,7 @@ class PlacedCell : public CellModel {
   }
 
   void setBoreLine(const BoreLine& line) override { cell_.setBoreLine(line); }
+  void strike(const PiezoPulse& pulse) override { cell_.strike(pulse); }
   const Bore* bore() const override { return cell_.bore(); }
   const std::optional<Contact>& contact() const override { return contact_; }
   std::optional<double> radius() const override { return cell_.radius(); }

@@ -11,6 +11,8 @@ namespace {
 
 /// Depth, in radii of the tip, at which a hole has taken in the tip's end.
 constexpr double kMouth = 1.5;
+/// In radii of the tip: over this way a force fades that has nothing left to return.
+constexpr double kReturn = 0.1;
 
 PunctureConfig punctureOf(const Scene& scene, const std::optional<PiercedBranch>& branch) {
   PunctureConfig config = scene.cell.puncture;
@@ -56,6 +58,7 @@ TipForce PuncturableCell::step(const Eigen::Vector3d& tip, const Eigen::Vector3d
   last_force_ = result.force;
   last_tip_ = tip;
   last_time_ = time;
+  pulse_.reset();
   return result;
 }
 
@@ -124,7 +127,7 @@ TipForce PuncturableCell::contactForce(const Pose& pose) {
   coverBore(contact && !config_.layers.empty() ? 0 : -1);
   const double push = result.force.dot(pose.axis), left = strength_ * strength();
   const bool failed = contact && !config_.layers.empty() &&
-                      (drawn_through_ || config_.layers.front().fails(push, contact->indentation, tip_.radius, left));
+                      (drawn_through_ || fails(config_.layers.front(), push, contact->indentation, left));
   if (failed && push > left * config_.layers.front().force) result.force *= left * config_.layers.front().force / push;
   result.force += fading_.at(pose.tip, pose.time);
   if (!failed) return result;
@@ -136,7 +139,8 @@ TipForce PuncturableCell::contactForce(const Pose& pose) {
     const double depth = (opened.position - pose.tip).dot(pose.axis);
     opened.length = branch_->grown(depth, branch_->onset()->length);
     const PiercedBranch::State pierced = branch_->at(depth, opened.length);
-    lost -= pierced.force * pose.axis;
+    struck_ = pulse_.has_value();
+    lost -= branchForce(depth, opened.length) * pose.axis;
     returned =
         std::clamp(branch_->whole(depth).energy - pierced.energy - branch_->cost() * opened.length, 0.0, returned);
   }
@@ -176,7 +180,7 @@ Eigen::Vector3d PuncturableCell::forceInside(const Pose& pose) {
   coverBore(pushed > 0 ? holes_[*hole_].layers : -1);
   const double left = strength_ * strength();
   others += std::min(push, left * layer.force) * pose.axis;
-  if (drawn_through_ || layer.fails(push, pushed, tip_.radius, left)) {
+  if (drawn_through_ || fails(layer, push, pushed, left)) {
     fading_.start(others, pose.tip, workTo(others + shaft, pose.tip), pose.time);
     failLayer(pose);
   }
@@ -188,7 +192,12 @@ double PuncturableCell::pierce(const Pose& pose) {
   const double depth = insertion_.depth;
   hole.length = branch_->grown(depth, hole.length);
   cell_->step(pose.tip + std::min(hole.length, depth) * pose.axis, pose.axis, pose.time);
-  return std::clamp(depth / (kMouth * tip_.radius), 0.0, 1.0) * branch_->at(depth, hole.length).force;
+  return branchForce(depth, hole.length);
+}
+
+double PuncturableCell::branchForce(double depth, double length) const {
+  const double force = std::clamp(depth / (kMouth * tip_.radius), 0.0, 1.0) * branch_->at(depth, length).force;
+  return struck_ ? std::min(force, std::max(work_, 0.0) / (kReturn * tip_.radius)) : force;
 }
 
 void PuncturableCell::enter(int hole, const Pose& pose) {
@@ -207,6 +216,7 @@ void PuncturableCell::leave(const Pose& pose) {
   if (std::isfinite(config_.resealing_time)) holes_[*hole_].left = pose.time;
   if (branch_) cell_->release();
   hole_.reset();
+  struck_ = false;
   coverBore(-1);
   strength_ = 1;
   in_contact_.reset();
@@ -220,6 +230,12 @@ void PuncturableCell::failLayer(const Pose& pose) {
   failed_at_ = pose.time;
   if (branch_ && isThrough()) next_layer_depth_ = 0;  // the shaft touches the wall of the whole hole
   if (!isThrough()) next_layer_depth_ = insertion_.depth + config_.layers[holes_[*hole_].layers].gap;
+}
+
+bool PuncturableCell::fails(const Layer& layer, double push, double indentation, double strength) {
+  if (!pulse_ || indentation <= 0) return layer.fails(push, indentation, tip_.radius, strength);
+  const StrokeResistance resistance{tip_.radius, config_.cytoplasm_viscosity, std::max(push, 0.0) / indentation};
+  return layer.fails(push + resistance.largestForce(*pulse_), indentation + pulse_->amplitude, tip_.radius, strength);
 }
 
 void PuncturableCell::updateDepth(const Pose& pose) {
@@ -242,6 +258,7 @@ double PuncturableCell::clearance(const Eigen::Vector3d& tip, const Eigen::Vecto
 void PuncturableCell::release() {
   cell_->release();
   hole_.reset();
+  struck_ = false;
   coverBore(-1);
   in_contact_.reset();
   insertion_.inside = false;

@@ -13,6 +13,7 @@
 #include "cell/model/cell_model.h"
 #include "cell/model/fading_force.h"
 #include "cell/model/pierced_branch.h"
+#include "cell/model/piezo_stroke.h"
 #include "cell/model/puncture_holes.h"
 #include "cell/model/scene.h"
 #include "cell/model/shaft_resistance.h"
@@ -52,6 +53,9 @@ namespace microinjection {
 /// change the force on the needle. A hole that the needle has left reseals, if the scene says so: the cell is then
 /// touched there as elsewhere, and its layers fail at a share of their limits that grows with the hole's age.
 ///
+/// A pulse of a piezo-driven needle (StrokeResistance) is over before the hand can feel it. It adds its force to that
+/// of the layer before the tip when it asks whether that fails, and its work is the piezo's.
+///
 /// A lost force fades (FadingForce) from its value in that step, so that the needle feels no step.
 /// It returns at most the work of the needle since first contact. The remaining forces are passive.
 class PuncturableCell : public CellModel {
@@ -68,6 +72,7 @@ class PuncturableCell : public CellModel {
   void release() override;
 
   void setBoreLine(const BoreLine& line) override { line_ = line; }
+  void strike(const PiezoPulse& pulse) override { pulse_ = pulse; }
   const Bore* bore() const override { return bore_ ? &bore_->reading() : nullptr; }
 
   /// In the cell: since first contact or, in an existing hole, since the tip passed the surface.
@@ -96,9 +101,14 @@ class PuncturableCell : public CellModel {
   Eigen::Vector3d forceInside(const Pose& pose);
   double pierce(
       const Pose& pose);  ///< N along the pipette, of the branch, whose hole grows; and the dent that is drawn
+  /// N along the pipette. A hole that a piezo has begun may hold more than the hand has given, which it does not get.
+  double branchForce(double depth, double length) const;
   void enter(int hole, const Pose& pose);
   void leave(const Pose& pose);
   void failLayer(const Pose& pose);
+  /// Whether the layer before the tip fails, indented by `indentation` (m) with `push` (N along the pipette) and by the
+  /// pulse.
+  bool fails(const Layer& layer, double push, double indentation, double strength);
   void updateDepth(const Pose& pose);
   void touch(const Eigen::Vector3d& point, const Pose& pose);
   double strength() const { return membrane_ ? membrane_->strength() : 1; }  ///< left by suction, of the limits
@@ -122,9 +132,11 @@ class PuncturableCell : public CellModel {
   PunctureHoles holes_;
   std::optional<int> hole_;        ///< hole that the needle is in
   double next_layer_depth_ = 0;    ///< m below the surface, of the next layer; after all have failed, of the last
+  bool struck_ = false;            ///< by a pulse, when the outermost layer failed here
   double failed_at_ = 0;           ///< s, of the last failure in this hole; negative infinity before
   bool inner_force_used_ = false;  ///< the last force was computed by the inner cell
   BoreLine line_;
+  std::optional<PiezoPulse> pulse_;  ///< of the next step
   std::optional<PiercedBranch> branch_;
   std::optional<BoreSuction> bore_;
   std::optional<AspiratedMembrane> membrane_;  ///< of the layer before the mouth that suction can break

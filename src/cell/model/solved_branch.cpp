@@ -201,6 +201,21 @@ SteadyPenetration steadyPenetration(const Scene& scene) {
   return best;
 }
 
+std::string describePuncture(const PiercedBranch& branch, const Scene& scene) {
+  const auto& onset = branch.onset();
+  if (!onset) return "no depth that is solved pierces it";
+  const double tip = scene.needle.tip.radius, steady = steadyPenetration(scene).force_in * tip * tip;
+  double depth = onset->depth, length = onset->length;
+  for (int i = 0; i < 12; ++i) length = branch.grown(depth += tip / 4, length);
+  const double force = branch.at(depth, length).force;
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "pierced at %.3g uN in a dent of %.3g um, then %.3g uN for the hole alone, which is %.2g %% from that "
+                "of a long one",
+                1e6 * onset->force, 1e6 * onset->depth, 1e6 * force, 100 * std::abs(force / steady - 1));
+  return text;
+}
+
 PiercedBranch solvePiercedBranch(const Scene& scene, double level, const std::function<void(int, int)>& report) {
   const SteadyPenetration steady = steadyPenetration(scene);
   return branchOf(solvePaths(scene, steady, level, report), scene, steady);

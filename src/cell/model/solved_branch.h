@@ -25,4 +25,8 @@ PiercedBranch solvePiercedBranch(const Scene& scene, double level = 0,
 /// The same from the user's cache, or solved and stored there.
 PiercedBranch storedPiercedBranch(const Scene& scene, const std::function<void(int, int)>& report = {});
 
+/// For the user: where it is pierced, and the force 3 tip radii further on, beside that of the long hole in the same
+/// material (DeepPenetration), which is exact far behind the surface.
+std::string describePuncture(const PiercedBranch& branch, const Scene& scene);
+
 }  // namespace microinjection
