@@ -15,6 +15,7 @@
 #include "benchmark/bench_main.h"
 #include "benchmark/common/printed_table.h"
 #include "cell/model/pierced_cell.h"
+#include "cell/model/piezo_stroke.h"
 #include "cell/model/solved_branch.h"
 
 namespace microinjection {
