@@ -162,7 +162,8 @@ void piezo(PrintedTable& table, double level) {
       for (const double rise_time : {10e-6, 50e-6, 200e-6}) {
         const auto missing = [&](double dent) {
           const double force = branch.whole(dent).force;
-          const StrokeResistance resistance{kTip, viscosity, force / dent};
+          const double stiffness = (branch.whole(dent + amplitude).force - force) / amplitude;
+          const StrokeResistance resistance{kTip, viscosity, stiffness};
           return onset.force - force - resistance.largestForce({amplitude, rise_time});
         };
         const double shallow = 1e-3 * kTip;

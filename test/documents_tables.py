@@ -126,7 +126,7 @@ def check_scene_keys(project, text):
     return [f'the key {key} is not in the tables' for key in sorted(keys) if not re.search(rf'[`/]{key}[`/]', text)]
 
 
-# In the comment of a number of a scene, or of a key that it is under.
+# In the comment of a number of a scene, or of the key that it is under.
 ORIGIN = re.compile(r'Table |section |\[\d+\]|of the paper|measured|computed|fitted|chosen|assumed|illustrative')
 CHOICES = {'offset', 'requirements'}  # of who uses the cell
 
@@ -137,17 +137,17 @@ def check_origins(project):
     for path in sorted(path for path in project.files if path.startswith('config/cells/')):
         lines = project.text(path).splitlines()
 
-        def walk(node, told):
+        def walk(node, above):
+            """`above`: whether the key above tells it."""
             for key, value in node.value if isinstance(node, yaml.MappingNode) else [(None, item) for item in node.value]:
                 line = (key or value).start_mark.line
-                known = told or bool(key and ORIGIN.search(lines[line].partition('#')[2]))
+                own = bool(key and ORIGIN.search(lines[line].partition('#')[2]))
                 if key and key.value in CHOICES:
                     continue
-                if isinstance(value, yaml.ScalarNode):
-                    if re.fullmatch(r'[-+]?[\d.]+(e[-+]?\d+)?', value.value) and not known:
-                        problems.append(f'{path}, line {line + 1}: {lines[line].strip()}: where is it from?')
-                else:
-                    walk(value, known)
+                if not isinstance(value, yaml.ScalarNode):
+                    walk(value, own or (above and key is None))
+                elif re.fullmatch(r'[-+]?[\d.]+(e[-+]?\d+)?', value.value) and not own and not above:
+                    problems.append(f'{path}, line {line + 1}: {lines[line].strip()}: where is it from?')
         walk(yaml.compose('\n'.join(lines)), False)
     return problems
 

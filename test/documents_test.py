@@ -220,6 +220,13 @@ See [other](doc/guide/other.md#how-its-rate-is-mostly), `config/bridge.yaml`, `s
         self.write('README.md', 'The default rig is `zaber`.\n')
         self.assertEqual(check_defaults(Project(self.root)), ['README.md: the default rig is sim, not zaber'])
 
+    def test_reports_a_number_of_a_scene_that_is_from_nowhere(self):
+        told = 'cell:\n  diameter: 56e-6  # m, Table I\n  puncture:        # illustrative\n    force: 1e-6\n    shaft:\n      friction: 2e-6\n'
+        (self.root / 'config/cells').mkdir()
+        (self.root / 'config/cells/mouse.yaml').write_text(told)
+        self.assertEqual([problem.partition(':')[0] for problem in check_origins(Project(self.root))],
+                         ['config/cells/mouse.yaml, line 6'])
+
     def test_finds_documents_that_no_link_leads_to(self):
         self.write('README.md', '[other](doc/guide/other.md)\n')
         self.write('doc/guide/lonely.md', '# Lonely\n')

@@ -101,7 +101,7 @@ void CellSimulatorNode::step(const Cycle::Tick& tick) {
     cell_->follow(holding_->step(tick, needle, cell_->insertion().inside));
   }
   const std::optional<PiezoPulse> pulse = piezo_ ? piezo_->due(tick.now) : std::nullopt;
-  if (pulse) cell_->strike(*pulse);
+  if (pulse && pose) cell_->strike(*pulse);
   if (pose) {
     force = cell_->step(pose->translation(), pose->linear().col(2), tick.now.toSec());
     if (holding_) force.force = holding_->forceOnNeedle(force.force);

@@ -25,6 +25,7 @@ VirtualHandNode::Parameters VirtualHandNode::Parameters::read(const Bus& bus) {
   reader.path("motion", parameters.motion, ConfigReader::kRequired);
   reader.number("start_delay", parameters.start_delay, Range::nonNegative());
   reader.boolean("wait_for_go", parameters.wait_for_go);
+  reader.text("recorder", parameters.recorder);
   reader.number("rate", parameters.rate, Range::closed(50, 5000));
   reader.number("force_timeout", parameters.force_timeout, Range::positive());
   parameters.hand = VirtualHandConfig::read(reader);
@@ -61,9 +62,15 @@ bool VirtualHandNode::mayMove() {
   return go_;
 }
 
+/// The record of a session that starts slowly would lack the motion's beginning.
+bool VirtualHandNode::isHeard() {
+  heard_ = heard_ || parameters_.recorder.empty() || position_.publisher.isSubscribedBy(parameters_.recorder);
+  return heard_;
+}
+
 void VirtualHandNode::step(const Cycle::Tick& tick) {
   if (!mayMove()) return;
-  if (followed_) elapsed_ += tick.dt;
+  if (followed_ && isHeard()) elapsed_ += tick.dt;
   const double time = std::max(0.0, elapsed_ - parameters_.start_delay);
   const HandMotion::Sample intended = motion_.at(time);
   const auto force = finiteForce(force_.get(tick.now));
@@ -78,6 +85,8 @@ void VirtualHandNode::report(diagnostic_updater::DiagnosticStatusWrapper& status
     status.summary(diagnostic_msgs::DiagnosticStatus::OK, "waits for the parameter /session/go");
   } else if (!followed_) {
     status.summary(diagnostic_msgs::DiagnosticStatus::WARN, "waits until the needle follows: " + hold_reason_);
+  } else if (!heard_) {
+    status.summary(diagnostic_msgs::DiagnosticStatus::WARN, "waits until " + parameters_.recorder + " listens");
   } else {
     status.summary(diagnostic_msgs::DiagnosticStatus::OK, "moves: " + phase_published_);
   }

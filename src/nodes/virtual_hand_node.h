@@ -38,11 +38,13 @@ class VirtualHandNode {
     bool wait_for_go = false;
     double rate = 1000;
     double force_timeout = 0.05;
+    std::string recorder;  ///< name of the node that must listen before the motion begins; empty: none
     VirtualHandConfig hand;
     static Parameters read(const Bus& bus);
   };
 
   bool mayMove();
+  bool isHeard();
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
   void step(const Cycle::Tick& tick);
   void publishClutch(const ros::Time& now, bool pressed);
@@ -60,6 +62,7 @@ class VirtualHandNode {
   bool go_;                ///< moves, and does not wait for the parameter /session/go
   ros::SteadyTime asked_;  ///< for it
   bool followed_ = false;  ///< the needle has followed the hand
+  bool heard_ = false;     ///< by the recorder
   std::string hold_reason_ = "nothing came on /haptic/loop_state";
   double elapsed_ = 0;  ///< s of steps since then; a stall of the machine pauses the hand
   std::optional<bool> clutch_published_;

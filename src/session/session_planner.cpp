@@ -1,5 +1,7 @@
 #include "session/session_plan.h"
 
+#include <set>
+
 #include "base/config_reader.h"
 #include "base/errors.h"
 #include "session/console_view.h"
@@ -66,10 +68,12 @@ class Planner {
 
   /// Of a loop that would be faster than the session's.
   void limitRate(NodePlan& node) const {
+    static const std::set<std::string> pictures = {"camera", "display", "image_recorder", "microscope"};
+    static const std::set<std::string> loops = {"haptic_device", "teleoperation_follower"};  // without a rate in config
+    if (!session_.rate || pictures.count(node.program) > 0) return;
     const YAML::Node rate = parameterAt(node.parameters, "rate");
-    const bool is_loop = rate.IsDefined() || node.program == "teleoperation_follower";
-    if (session_.rate && is_loop && (!rate.IsDefined() || rate.as<double>() > *session_.rate))
-      setParameter(node.parameters, "rate", numberValue(*session_.rate));
+    const double own = rate.IsDefined() ? rate.as<double>() : loops.count(node.program) > 0 ? 1000 : 0;
+    if (own > *session_.rate) setParameter(node.parameters, "rate", numberValue(*session_.rate));
   }
 
   using Remaps = std::map<std::string, std::string>;
@@ -443,6 +447,9 @@ class Planner {
     NodePlan& node = add("session_recorder", "session_recorder");
     node.required = true;
     setText(node, "output_dir", record.folder);
+    for (NodePlan& each : plan_.nodes) {
+      if (each.program == "virtual_hand") setText(each, "recorder", "/session_recorder");
+    }
     setFlag(node, "hand", session_.hand.present());
     setFlag(node, "injector", session_.injector != "none");
     if (session_.holder != "none") setFlag(node, "holder", true);

@@ -344,6 +344,8 @@ TEST_F(SessionPlanTest, TheSessionsRateIsTheLargestOfAnyLoop) {
   EXPECT_EQ(at(limited, "holder", "rate"), "200") << "slower by itself";
   EXPECT_EQ(at(limited, "cell_simulator", "rate"), "500") << "an override has the last word";
   EXPECT_EQ(at(plan(), "micromanipulator", "rate"), "1000");
+  EXPECT_EQ(at(plan({"rate:=5000", "link.scheme:=wave"}), "teleoperation_follower", "rate"), "-") << "it is slower";
+  EXPECT_EQ(at(plan({"rate:=100", "hand.device:=joy"}), "haptic_device", "rate"), "100.0");
   EXPECT_EQ(at(plan({"rate:=auto"}), "micromanipulator", "rate"), "1000");
 }
 

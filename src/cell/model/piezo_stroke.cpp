@@ -5,7 +5,7 @@
 namespace microinjection {
 
 double StrokeResistance::largestForce(const PiezoPulse& pulse) const {
-  // With p = pi t / rise_time it is elastic / 2 + (inertia - elastic / 2) cos p + drag sin p.
+  // With p = pi t / rise_time it is elastic + (inertia - elastic) cos p + drag sin p.
   const double half = pulse.amplitude / 2, pace = M_PI / pulse.rise_time;
   const double elastic = stiffness * half, drag = 8 * viscosity * tip_radius * half * pace;
   const double inertia = 4.0 / 3 * kDensity * std::pow(tip_radius, 3) * half * pace * pace;

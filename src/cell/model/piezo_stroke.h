@@ -15,7 +15,7 @@ struct StrokeResistance {
 
   double tip_radius = 0;  ///< m
   double viscosity = 0;   ///< Pa s, of the cytoplasm
-  double stiffness = 0;   ///< N/m, of the dent when nothing is fast
+  double stiffness = 0;   ///< N/m, of the dent over the amplitude when nothing is fast
 
   /// Largest force of the pulse along the pipette, N, beside that of the dent before it:
   ///

@@ -11,8 +11,6 @@ namespace {
 
 /// Depth, in radii of the tip, at which a hole has taken in the tip's end.
 constexpr double kMouth = 1.5;
-/// In radii of the tip: over this way a force fades that has nothing left to return.
-constexpr double kReturn = 0.1;
 
 PunctureConfig punctureOf(const Scene& scene, const std::optional<PiercedBranch>& branch) {
   PunctureConfig config = scene.cell.puncture;
@@ -49,6 +47,7 @@ TipForce PuncturableCell::step(const Eigen::Vector3d& tip, const Eigen::Vector3d
   inner_force_used_ = false;
   if (!tip.allFinite() || !axis.allFinite() || !std::isfinite(time)) {
     invalid_reason_ = "the needle's pose is not finite";
+    pulse_.reset();
     return {false, Eigen::Vector3d::Zero()};
   }
   const Pose pose{tip, axis, time, last_time_ ? std::max(time - *last_time_, 0.0) : 0};
@@ -140,7 +139,7 @@ TipForce PuncturableCell::contactForce(const Pose& pose) {
     opened.length = branch_->grown(depth, branch_->onset()->length);
     const PiercedBranch::State pierced = branch_->at(depth, opened.length);
     struck_ = pulse_.has_value();
-    lost -= branchForce(depth, opened.length) * pose.axis;
+    lost -= branchForce(depth, opened.length, pose) * pose.axis;
     returned =
         std::clamp(branch_->whole(depth).energy - pierced.energy - branch_->cost() * opened.length, 0.0, returned);
   }
@@ -192,12 +191,14 @@ double PuncturableCell::pierce(const Pose& pose) {
   const double depth = insertion_.depth;
   hole.length = branch_->grown(depth, hole.length);
   cell_->step(pose.tip + std::min(hole.length, depth) * pose.axis, pose.axis, pose.time);
-  return branchForce(depth, hole.length);
+  return branchForce(depth, hole.length, pose);
 }
 
-double PuncturableCell::branchForce(double depth, double length) const {
+double PuncturableCell::branchForce(double depth, double length, const Pose& pose) const {
   const double force = std::clamp(depth / (kMouth * tip_.radius), 0.0, 1.0) * branch_->at(depth, length).force;
-  return struck_ ? std::min(force, std::max(work_, 0.0) / (kReturn * tip_.radius)) : force;
+  const double out = (pose.tip - last_tip_).dot(pose.axis);
+  if (!struck_ || out <= 0) return force;
+  return std::clamp(2 * work_ / out - last_force_.dot(pose.axis), 0.0, std::max(force, 0.0));
 }
 
 void PuncturableCell::enter(int hole, const Pose& pose) {
@@ -233,9 +234,15 @@ void PuncturableCell::failLayer(const Pose& pose) {
 }
 
 bool PuncturableCell::fails(const Layer& layer, double push, double indentation, double strength) {
-  if (!pulse_ || indentation <= 0) return layer.fails(push, indentation, tip_.radius, strength);
-  const StrokeResistance resistance{tip_.radius, config_.cytoplasm_viscosity, std::max(push, 0.0) / indentation};
-  return layer.fails(push + resistance.largestForce(*pulse_), indentation + pulse_->amplitude, tip_.radius, strength);
+  if (!pulse_ || pulse_->amplitude <= 0 || indentation <= 0)
+    return layer.fails(push, indentation, tip_.radius, strength);
+  const bool known = branch_ && &layer == &config_.layers.front();
+  const double amplitude = pulse_->amplitude;
+  const double stiffness =
+      known ? (branch_->whole(indentation + amplitude).force - branch_->whole(indentation).force) / amplitude
+            : std::max(push, 0.0) / indentation;
+  const StrokeResistance resistance{tip_.radius, config_.cytoplasm_viscosity, stiffness};
+  return layer.fails(push + resistance.largestForce(*pulse_), indentation + amplitude, tip_.radius, strength);
 }
 
 void PuncturableCell::updateDepth(const Pose& pose) {
@@ -259,6 +266,7 @@ void PuncturableCell::release() {
   cell_->release();
   hole_.reset();
   struck_ = false;
+  pulse_.reset();
   coverBore(-1);
   in_contact_.reset();
   insertion_.inside = false;

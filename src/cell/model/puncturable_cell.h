@@ -102,7 +102,7 @@ class PuncturableCell : public CellModel {
   double pierce(
       const Pose& pose);  ///< N along the pipette, of the branch, whose hole grows; and the dent that is drawn
   /// N along the pipette. A hole that a piezo has begun may hold more than the hand has given, which it does not get.
-  double branchForce(double depth, double length) const;
+  double branchForce(double depth, double length, const Pose& pose) const;
   void enter(int hole, const Pose& pose);
   void leave(const Pose& pose);
   void failLayer(const Pose& pose);

@@ -261,6 +261,8 @@ void RosBus::run() {
 }
 
 void RosBus::runSteps() {
+  constexpr int kLongSteps = 3;  // one behind the other; a single one is a stall
+  int long_steps = 0;
   ros::SteadyTime deadline = steady();
   while (shouldContinue()) {
     const ros::WallDuration wait(secondsBetween(steady(), deadline));
@@ -275,7 +277,8 @@ void RosBus::runSteps() {
     sampled_.queue.callAvailable();
     step_(this->now());
     // Where the processors do too much: a loop in real time that never sleeps would leave nothing to the ROS master.
-    if (secondsBetween(now, steady()) > period_) pause(period_);
+    long_steps = secondsBetween(now, steady()) > period_ ? long_steps + 1 : 0;
+    if (long_steps >= kLongSteps) pause(period_);
   }
 }
 

@@ -18,7 +18,8 @@ void require(const Range& range, const char* field, double value) {
 }  // namespace
 
 PiezoTrain::PiezoTrain(Bus& bus)
-    : bus_(bus), subscription_(subscribeGuarded(bus, "needle/piezo_pulses", 1, &PiezoTrain::receive, this)) {}
+    : bus_(bus),
+      subscription_(subscribeGuarded(bus, "needle/piezo_pulses", 1, &PiezoTrain::receive, this, StampRule::kAny)) {}
 
 void PiezoTrain::receive(const cell_microinjection::PiezoPulses& message) {
   left_ = 0;
@@ -27,8 +28,8 @@ void PiezoTrain::receive(const cell_microinjection::PiezoPulses& message) {
   require(Range::closed(0, kLargestAmplitude), "amplitude", message.amplitude);
   require(Range::closed(kSlowest, kFastest), "rate", message.rate);
   require(Range::closed(0, kMost), "number", message.number);
-  const double age = message.header.stamp.isZero() ? 0 : secondsBetween(message.header.stamp, bus_.now());
-  require(Range::closed(-kOldest, kOldest), "age of its stamp", age);
+  require(Range::closed(0, 0.5 / message.rise_time), "rate, of pulses that go ahead and come back,", message.rate);
+  require(Range::closed(-kOldest, kOldest), "age of its stamp, s,", secondsBetween(message.header.stamp, bus_.now()));
   pulse_ = {message.amplitude, message.rise_time};
   period_ = 1 / message.rate;
   left_ = message.number;
@@ -36,10 +37,9 @@ void PiezoTrain::receive(const cell_microinjection::PiezoPulses& message) {
 }
 
 std::optional<PiezoPulse> PiezoTrain::due(const ros::Time& now) {
-  if (left_ == 0 || now < next_) return std::nullopt;
-  --left_;
-  next_ = now + ros::Duration(period_);
-  return pulse_;
+  bool is_due = false;
+  for (; left_ > 0 && next_ <= now; --left_, next_ += ros::Duration(period_)) is_due = true;
+  return is_due ? std::optional(pulse_) : std::nullopt;
 }
 
 }  // namespace microinjection

@@ -11,12 +11,12 @@ namespace microinjection {
 
 /// The pulses that a piezo-driven needle is told to give, one after the other.
 ///
-/// In: /needle/piezo_pulses (PiezoPulses), which a piezo's own driver may obey as well. Another one takes the place of
-/// that under way; one with a number of 0 ends it.
+/// In: /needle/piezo_pulses (PiezoPulses). Another one takes the place of that under way; one with a number of 0 ends
+/// it, whatever its stamp.
 class PiezoTrain {
  public:
   static constexpr double kLargestAmplitude = 20e-6;                      ///< m
-  static constexpr double kShortestRise = 1e-6, kLongestRise = 10e-3;     ///< s
+  static constexpr double kShortestRise = 1e-6, kLongestRise = 0.5e-3;    ///< s
   static constexpr double kSlowest = 0.1, kFastest = 1000, kMost = 1000;  ///< 1/s, 1/s, pulses
 
   explicit PiezoTrain(Bus& bus);

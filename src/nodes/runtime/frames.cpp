@@ -60,7 +60,7 @@ Eigen::Isometry3d waitForFrame(Bus& bus, const std::string& parent, const std::s
             << " s: rig_frames, robot_state_publisher or a static_transform_publisher must publish it";
     return message.str();
   };
-  if (!bus.waitUntil(found, std::min(kSilent, timeout)) && timeout > kSilent) {
+  if (!bus.waitUntil(found, std::min(kSilent, timeout)) && timeout > kSilent && bus.isRunning()) {
     ROS_WARN_STREAM(missing(kSilent));
     bus.waitUntil(found, timeout - kSilent);
   }

@@ -23,7 +23,8 @@ SuctionRun::Status SuctionRun::step(const std::optional<double>& force,
   const std::optional<double> flow = injector ? std::optional(-injector->flow) : std::nullopt;
   if (confirming_) return confirm(force, interface, dt);
   time_ += dt;
-  const bool rests = drawing_ == 0 && (time_ <= kRest || (force && !detector_.knowsForce() && time_ <= kLongestRest));
+  feels_ = feels_ || force;
+  const bool rests = drawing_ == 0 && (time_ <= kRest || (feels_ && !detector_.knowsForce() && time_ <= kLongestRest));
   if (rests && injector && !injector->busy) balance_ = injector->pressure;
   // A step of the suction moves a tongue at once: no run of the interface.
   const bool leaps = goal_.rate == 0 && !rests && drawing_ < kLeap;

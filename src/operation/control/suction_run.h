@@ -54,6 +54,7 @@ class SuctionRun {
   BreakDetector detector_;
   double time_ = 0;     ///< s, at rest, then at the largest suction
   double drawing_ = 0;  ///< s
+  bool feels_ = false;  ///< the force has been read
   bool confirming_ = false;
   double suction_ = 0;             ///< Pa
   std::optional<double> balance_;  ///< Pa, gauge, of the injector before the suction

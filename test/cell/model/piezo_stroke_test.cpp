@@ -67,17 +67,20 @@ TEST(PiezoPuncture, TheHandGetsNothingOfThePiezosWork) {
   const SpringBranch branch;
   PunctureConfig tough;
   tough.layers.emplace_back().toughness = 1;
-  for (const double depth : {0.5e-6, 3e-6, 10e-6, 20e-6}) {
-    PunctureDrive needle(tough, 1000, branch.make());
-    needle.toDepth(depth);
-    needle.cell->strike({5e-6, 5e-6});
-    needle.rest(0.001);
-    ASSERT_EQ(needle.layers(), 1) << depth;
-    needle.rest(0.05);
-    needle.toDepth(depth + 5e-6);
-    needle.toDepth(-1e-6);
-    needle.rest(0.1);
-    EXPECT_GE(needle.least_work, 0) << depth;
+  for (const double rate : {50.0, 1000.0}) {
+    for (const double depth : {0.5e-6, 3e-6, 10e-6, 20e-6}) {
+      PunctureDrive needle(tough, rate, branch.make());
+      needle.toDepth(depth);
+      needle.cell->strike({5e-6, 5e-6});
+      needle.rest(1 / rate);
+      ASSERT_EQ(needle.layers(), 1) << depth;
+      needle.rest(0.2);
+      needle.toDepth(30e-6, 80e-6);
+      EXPECT_NEAR(needle.rest(0.2), branch.opened + branch.cost, 0.01 * branch.cost) << depth << ": as any other hole";
+      needle.toDepth(-1e-6, 80e-6);
+      needle.rest(0.1);
+      EXPECT_GE(needle.least_work, -1e-20) << depth << " " << rate;
+    }
   }
 }
 

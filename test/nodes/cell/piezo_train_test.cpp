@@ -33,7 +33,7 @@ class PiezoTrainTest : public testing::Test {
     return state && state->punctured;
   }
   void send(const cell_microinjection::PiezoPulses& message) {
-    session_.world().say("needle/piezo_pulses", message);
+    session_.world().sayNow("needle/piezo_pulses", message);
     session_.run(0.1);
   }
 
@@ -42,18 +42,20 @@ class PiezoTrainTest : public testing::Test {
 };
 
 TEST_F(PiezoTrainTest, AStrongPulseBreaksTheMembraneAndAWeakOneDoesNot) {
-  send(pulses(0.5e-6, 1e-3, 50, 20));
+  send(pulses(0.5e-6, 0.5e-3, 50, 20));
   EXPECT_FALSE(punctured());
   send(pulses(10e-6, 5e-6, 50, 1));
   EXPECT_TRUE(punctured());
 }
 
 TEST_F(PiezoTrainTest, TheirNumberAndRateCount) {
-  needle_.moveTo(31e-6, 100e-6);
-  send(pulses(10e-6, 5e-6, 10, 3));  // the third is 0.2 s later
-  needle_.moveTo(25e-6, 1e-3);
-  session_.run(0.2);
-  EXPECT_TRUE(punctured());
+  for (const unsigned number : {2u, 3u}) {
+    needle_.moveTo(31e-6, 100e-6);
+    send(pulses(10e-6, 5e-6, 10, number));  // the third is 0.2 s after the first
+    needle_.moveTo(25e-6, 1e-3);
+    session_.run(0.3);
+    EXPECT_EQ(punctured(), number == 3) << number;
+  }
 }
 
 TEST_F(PiezoTrainTest, ANumberOfZeroEndsThem) {
@@ -65,15 +67,39 @@ TEST_F(PiezoTrainTest, ANumberOfZeroEndsThem) {
   EXPECT_FALSE(punctured());
 }
 
+/// A stop must not be late because a clock is wrong.
+TEST_F(PiezoTrainTest, AStopCountsWhateverItsStamp) {
+  needle_.moveTo(31e-6, 100e-6);
+  send(pulses(10e-6, 5e-6, 10, 1000));
+  auto stop = pulses(0, 0, 0, 0);
+  stop.header.stamp = session_.now() + ros::Duration(1000);
+  session_.world().say("needle/piezo_pulses", stop);
+  session_.run(0.1);
+  needle_.moveTo(25e-6, 100e-6);
+  session_.run(0.2);
+  EXPECT_FALSE(punctured());
+}
+
 TEST_F(PiezoTrainTest, WhatNoPiezoDoesIsRefused) {
-  auto old = pulses(10e-6, 5e-6, 10, 1);
-  old.header.stamp = session_.now() - ros::Duration(0.7);
-  for (const auto& wrong : {pulses(30e-6, 5e-6, 10, 1), pulses(-1e-6, 5e-6, 10, 1), pulses(NAN, 5e-6, 10, 1),
-                            pulses(10e-6, 0, 10, 1), pulses(10e-6, 1, 10, 1), pulses(10e-6, 5e-6, 0, 1),
-                            pulses(10e-6, 5e-6, INFINITY, 1), pulses(10e-6, 5e-6, 10, 1001), old}) {
+  for (const auto& wrong :
+       {pulses(30e-6, 5e-6, 10, 1), pulses(-1e-6, 5e-6, 10, 1), pulses(NAN, 5e-6, 10, 1), pulses(10e-6, 0, 10, 1),
+        pulses(10e-6, 1e-3, 10, 1), pulses(10e-6, 5e-6, 0, 1), pulses(10e-6, 5e-6, INFINITY, 1),
+        pulses(10e-6, 5e-6, 10, 1001), pulses(10e-6, 0.5e-3, 1000.1, 1)}) {
     send(wrong);
     EXPECT_FALSE(punctured()) << wrong;
   }
+  for (const double age : {-0.7, 0.7}) {
+    auto late = pulses(10e-6, 5e-6, 10, 1);
+    late.header.stamp = session_.now() - ros::Duration(age);
+    session_.world().say("needle/piezo_pulses", late);
+    session_.run(0.1);
+    EXPECT_FALSE(punctured()) << age;
+  }
+  session_.world().say("needle/piezo_pulses", pulses(10e-6, 5e-6, 10, 1));  // without a stamp
+  session_.run(0.1);
+  EXPECT_FALSE(punctured());
+  send(pulses(10e-6, 5e-6, 10, 1));
+  EXPECT_TRUE(punctured()) << "which any of them would have done";
 }
 
 }  // namespace
