@@ -50,7 +50,8 @@ void printIdentification(const std::string& model, const Identification& found) 
   std::printf("%s: %s\n", model.c_str(), found.model.c_str());
   for (const Estimate& estimate : found.estimates) {
     std::printf("  %-18s %12.5g %-5s 95 %% interval [%.5g, %.5g]%s\n", estimate.name.c_str(), estimate.value,
-                estimate.unit.c_str(), estimate.low, estimate.high, estimate.bounded ? "" : ", open on one side");
+                estimate.unit.c_str(), estimate.low, estimate.high,
+                estimate.bounded() ? "" : (", open " + estimate.open()).c_str());
   }
   if (found.residuals.size() == 0) {
     if (found.depth > 0) std::printf("  depth %.4g um, force there %.4g nN\n", 1e6 * found.depth, 1e9 * found.size);
@@ -70,7 +71,7 @@ std::string estimateRows(const std::string& model, const Identification& found) 
   for (const Estimate& estimate : found.estimates) {
     char row[200];
     std::snprintf(row, sizeof(row), "%s,%s,%.9g,%.9g,%.9g,%s,%d\n", model.c_str(), estimate.name.c_str(),
-                  estimate.value, estimate.low, estimate.high, estimate.unit.c_str(), estimate.bounded);
+                  estimate.value, estimate.low, estimate.high, estimate.unit.c_str(), estimate.bounded());
     rows += row;
   }
   return rows;
@@ -108,7 +109,7 @@ std::shared_ptr<ElasticLaw> makeLaw(const std::string& model, const std::optiona
                                     const IdentifyArguments& arguments, double deepest) {
   if (model != "family" && !isSolved(model)) return makeFormulaLaw(model, geometryOf(scene, arguments.geometry));
   if (!scene) throw ConfigError("--model " + model + ": needs --scene");
-  if (isSolved(model)) return solveSceneLaw(*scene, model == "live", deepest);
+  if (isSolved(model)) return solveSceneLaw(*scene, model == "live", deepest, arguments.free_material);
   return std::make_shared<FamilyLaw>(findFamily(arguments.families, *scene), *scene, arguments.free);
 }
 
@@ -124,8 +125,10 @@ double depthOf(const ForceCurve& curve) {
 bool isDetermined(const Identification& found) {
   const Estimate* const open = found.undetermined();
   if (!open) return true;
-  std::cerr << "identify: " << open->name << " = " << open->value << ' ' << open->unit << ", interval [" << open->low
-            << ", " << open->high << "]: the record does not determine it: no scene is written\n";
+  std::cerr << "identify: " << open->name << " = " << open->value << (open->unit.empty() ? "" : " ") << open->unit
+            << ", interval [" << open->low << ", " << open->high << "]"
+            << (open->bounded() ? "" : ", open " + open->open())
+            << ": the record does not determine it: no scene is written\n";
   return false;
 }
 

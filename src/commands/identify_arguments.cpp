@@ -13,6 +13,7 @@
 #include "base/plausible.h"
 #include "base/separated.h"
 #include "base/worker_processes.h"
+#include "commands/scene_law.h"
 
 namespace microinjection {
 namespace {
@@ -37,7 +38,8 @@ With a record of the same cell the two moduli are joined (model `both`, which is
 Models (each is fitted, and compared with the others):
   family    the converged force of the scene's cell; its modulus, and ratios that --free names; it is compared with
             cells that have other layers
-  solution  the same for any scene of solids, solved as by `indent` to the record's depth, which takes a minute
+  solution  the same for any scene of solids, solved as by `indent` to the record's depth, which takes a minute; also
+            how it stiffens: --free ogden_exponent or gent_limit, with some minutes
   live      same by the P1 tetrahedra of a live session, which are too stiff
   hertz     a paraboloid on a half space, with a scene on a ball of the cell's size
   cone      Sneddon; needs --half-angle
@@ -127,6 +129,37 @@ void requireFitTongue(const IdentifyArguments& arguments, const boost::program_o
   }
 }
 
+/// Throws ConfigError for what none of the models has.
+void readFree(const std::vector<std::string>& names, IdentifyArguments& arguments) {
+  const auto fits = [&](const std::string& model) {
+    return std::find(arguments.models.begin(), arguments.models.end(), model) != arguments.models.end();
+  };
+  if (!names.empty() && arguments.point) {
+    throw ConfigError("--free: must be left out with --point, which gives the modulus only");
+  }
+  for (const std::string& name : names) {
+    const bool material = freeMaterialParameters().count(name) != 0;
+    if (!material && !fits("family")) {
+      throw ConfigError("--free " + name + ": must be ogden_exponent or gent_limit, or a ratio with --model family");
+    }
+    if (!material) {
+      arguments.free.push_back(name);
+      continue;
+    }
+    if (!fits("solution") && !fits("live")) {
+      throw ConfigError("--free " + name + ": no family and no formula has it; needs --model solution");
+    }
+    if (!arguments.tongue.empty()) {
+      throw ConfigError("--free " + name +
+                        ": must be left out with --tongue, whose modulus is that of the scene's own");
+    }
+    if (!arguments.free_material.empty()) {
+      throw ConfigError("--free " + name + ": must be left out beside " + arguments.free_material);
+    }
+    arguments.free_material = name;
+  }
+}
+
 /// The scene has the modulus of these.
 bool isOfScene(const std::string& model) { return model == "family" || model == "solution" || model == "live"; }
 
@@ -153,7 +186,9 @@ std::optional<IdentifyArguments> parseIdentifyArguments(int argc, char** argv) {
   add("scene", po::value(&arguments.scene), "file with the cell's sizes and the tip, SI units");
   add("model", po::value(&models),
       "models, the first one for --out; default: family,hertz with a scene, else hertz; not with --tongue");
-  add("free", po::value(&free), "ratios of the family to find, too: core_modulus, shell_thickness, tip_radius, ...");
+  add("free", po::value(&free),
+      "what to find, too: ratios of the family (core_modulus, shell_thickness, tip_radius, ...), or of a solution "
+      "ogden_exponent or gent_limit, by which its material stiffens");
   add("prony", po::value(&arguments.identification.prony_terms)->default_value(0),
       "number of relaxation times to find");
   add("drift", po::value(&drift)->default_value("auto"), "of the sensor: auto, on or off");
@@ -222,10 +257,8 @@ std::optional<IdentifyArguments> parseIdentifyArguments(int argc, char** argv) {
   }
   arguments.geometry.poisson_ratio = poisson_ratio;
   arguments.models = split(models.empty() ? (arguments.scene.empty() ? "hertz" : "family,hertz") : models);
-  arguments.free = split(free);
   if (arguments.models.empty()) throw ConfigError("--model = " + models + ": must name a model");
-  const bool family = std::find(arguments.models.begin(), arguments.models.end(), "family") != arguments.models.end();
-  if (!arguments.free.empty() && !family) throw ConfigError("--free: needs --model family");
+  readFree(split(free), arguments);
   if (!arguments.out.empty() && !isOfScene(arguments.models.front())) {
     throw ConfigError("--out: the first model is " + arguments.models.front() +
                       ": must be family, solution or live, whose modulus is that of the scene's cell");

@@ -25,9 +25,10 @@ struct IdentifyArguments {
   std::string families;             ///< folder
   ForceCurveConfig curve;
   IdentificationConfig identification;
-  std::string out;        ///< scene file; empty: none
-  std::string residuals;  ///< CSV file; empty: none
-  std::string csv;        ///< same, of what was found
+  std::string out;            ///< scene file; empty: none
+  std::string residuals;      ///< CSV file; empty: none
+  std::string csv;            ///< same, of what was found
+  std::string free_material;  ///< of freeMaterialParameters(); empty: none
 };
 
 /// Returns nothing after printing the help. Throws ConfigError, or an exception of

@@ -28,18 +28,47 @@ class IdentifyCommand : public CommandTest {
   Outcome run(const std::string& arguments) const { return CommandTest::run(arguments + " --families " + kFamilies); }
 
   /// {value, low, high} of the modulus in the table of --csv.
-  std::vector<double> modulus(const std::string& model) const {
+  std::vector<double> modulus(const std::string& model) const { return found(model, "young_modulus"); }
+
+  /// Same of any quantity.
+  std::vector<double> found(const std::string& model, const std::string& quantity) const {
     std::istringstream lines(read(directory_ + "found.csv"));
     for (std::string line; std::getline(lines, line);) {
-      const std::string head = model + ",young_modulus,";
+      const std::string head = model + ',' + quantity + ',';
       if (line.rfind(head, 0) != 0) continue;
       std::vector<double> values;
       std::istringstream cells(line.substr(head.size()));
       for (std::string cell; values.size() < 3 && std::getline(cells, cell, ',');) values.push_back(std::stod(cell));
       return values;
     }
-    ADD_FAILURE() << "no modulus of " << model;
+    ADD_FAILURE() << "no " << quantity << " of " << model;
     return {0, 0, 0};
+  }
+
+  /// A mouse's oocyte of model ogden under a round tip.
+  void writeStiffening(const std::string& name, double exponent) const {
+    std::ofstream(directory_ + name) << "cell: {diameter: 56e-6, material: {model: ogden, young_modulus: 17.9e3, "
+                                        "poisson_ratio: 0.49, ogden_exponent: "
+                                     << exponent << "}}\nholding_pipette: {contact_radius: 10e-6}\n"
+                                     << "needle: {tip: {shape: hemisphere, radius: 6e-6}, contact: {mode: sticking}}\n";
+  }
+
+  /// A record of the depths and forces that `indent` has written, behind an approach without force.
+  void writeApproachAnd(const std::string& solved, double noise) const {
+    std::mt19937 random(7);
+    std::normal_distribution<double> normal;
+    std::ofstream file(directory_ + "record.csv");
+    file.precision(12);
+    file << "position_m,force_N\n";
+    for (int i = -100; i < 0; ++i) file << 0.1e-6 * i << ',' << noise * normal(random) << '\n';
+    std::istringstream lines(read(directory_ + solved));
+    std::string line;
+    std::getline(lines, line);
+    while (std::getline(lines, line)) {
+      double depth = 0, force = 0;
+      ASSERT_EQ(std::sscanf(line.c_str(), "%lf,%*[^,],%*[^,],%lf", &depth, &force), 2) << line;
+      file << depth << ',' << force + noise * normal(random) << '\n';
+    }
   }
 
   /// A record of a linear cell under a disc, whose force is the slope times the depth.
@@ -177,6 +206,50 @@ TEST_F(IdentifyCommand, ARecordIsFittedByTheSolutionOfASceneThatIsInNoFamily) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   // The paper's linear cell has 5.25 uN at 45 um with 17.9 kPa; see doc/reference/paper.md.
   EXPECT_NEAR(modulus("solution")[0], 0.1 / (5.25e-6 / 45e-6) * 17.9e3, 0.01 * 17.9e3);
+}
+
+/// A curve of an exponent between two of those that `identify` solves, with noise.
+TEST_F(IdentifyCommand, HowACellStiffensIsFound) {
+  writeStiffening("true.yaml", 8);
+  writeStiffening("scene.yaml", 4);
+  std::string depths = "0.4e-6";
+  for (int k = 2; k <= 30; ++k) depths += ',' + std::to_string(0.4 * k) + "e-6";
+  const std::string indent = "cd " + directory_ + " && " MICROINJECTION_INDENT " --scene true.yaml --depths " + depths +
+                             " --csv solved.csv 2>/dev/null";
+  ASSERT_EQ(std::system(indent.c_str()), 0);
+  writeApproachAnd("solved.csv", 3e-9);
+  const std::string options =
+      "--record record.csv --drift off --model solution --free ogden_exponent --csv found.csv --scene scene.yaml";
+  const Outcome deep = run(options + " --out fitted.yaml");
+  ASSERT_EQ(deep.status, 0) << deep.out << deep.err;
+  const std::vector<double> exponent = found("solution", "ogden_exponent");
+  EXPECT_NEAR(exponent[0], 8, 0.8);
+  EXPECT_LT(exponent[1], 8);
+  EXPECT_GT(exponent[2], 8);
+  EXPECT_NEAR(modulus("solution")[0], 17.9e3, 0.03 * 17.9e3);
+  EXPECT_NE(read(directory_ + "fitted.yaml").find("ogden_exponent: " + std::to_string(exponent[0]).substr(0, 3)),
+            std::string::npos);
+}
+
+TEST_F(IdentifyCommand, WhatTheSceneCannotFreeIsRefused) {
+  writeLinear(0.1);
+  writeStiffening("ogden.yaml", 4);
+  const std::string zona = " --scene " + std::string(kCells) + "mouse_oocyte_zona.yaml",
+                    ogden = " --model solution --scene ogden.yaml", record = "--record record.csv --free ";
+  for (const auto& [arguments, told] : std::vector<std::pair<std::string, std::string>>{
+           {record + "ogden_exponent --model solution" + zona,
+            "--free ogden_exponent: needs a layer of model ogden; the scene has neo_hookean, neo_hookean"},
+           {record + "gent_limit" + ogden, "--free gent_limit: needs a layer of model gent; the scene has ogden"},
+           {record + "colour" + ogden, "--free colour: must be ogden_exponent or gent_limit, or a ratio with"},
+           {record + "ogden_exponent" + zona, "--free ogden_exponent: no family and no formula has it"},
+           {record + "ogden_exponent,gent_limit" + ogden, "--free gent_limit: must be left out beside ogden_exponent"},
+           {record + "ogden_exponent --tongue t.csv" + ogden, "--free ogden_exponent: must be left out with --tongue"},
+           {"--point 3e-6,1e-7 --reading-error 0.05 --free ogden_exponent" + ogden,
+            "--free: must be left out with --point"}}) {
+    const Outcome refused = run(arguments);
+    EXPECT_EQ(refused.status, 2) << arguments;
+    EXPECT_NE(refused.err.find(told), std::string::npos) << arguments << '\n' << refused.err;
+  }
 }
 
 TEST_F(IdentifyCommand, BadPointsAreRefused) {

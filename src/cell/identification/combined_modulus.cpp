@@ -20,15 +20,16 @@ double deviationOf(const Estimate& modulus) {
 Identification combineModuli(const Identification& force, const Identification& tongue) {
   const Estimate &by_force = *force.find("young_modulus"), &by_tongue = *tongue.find("young_modulus");
   Identification result;
-  if (!by_force.bounded && !by_tongue.bounded) {
+  if (!by_force.bounded() && !by_tongue.bounded()) {
     result = tongue;
     result.warnings.emplace_back("neither the force nor the tongues bound the modulus");
     return result;
   }
-  if (!by_force.bounded || !by_tongue.bounded) {
-    result = by_force.bounded ? force : tongue;
-    result.warnings.emplace_back(by_force.bounded ? "the tongues do not bound the modulus: it is that of the force"
-                                                  : "the force does not bound the modulus: it is that of the tongues");
+  if (!by_force.bounded() || !by_tongue.bounded()) {
+    result = by_force.bounded() ? force : tongue;
+    result.warnings.emplace_back(by_force.bounded()
+                                     ? "the tongues do not bound the modulus: it is that of the force"
+                                     : "the force does not bound the modulus: it is that of the tongues");
     return result;
   }
   const double first = deviationOf(by_force), second = deviationOf(by_tongue), joint = std::hypot(first, second);

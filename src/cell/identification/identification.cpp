@@ -99,10 +99,16 @@ Eigen::VectorXd residualsOf(CurveModel& model, const Eigen::VectorXd& internal) 
   return Eigen::Map<const Eigen::VectorXd>(model.curve().force.data(), force.size()) - force;
 }
 
+/// It ends at the borders of the search.
+ProfileInterval curvatureInterval(const CurveModel::Unknown& unknown, double found, double deviation) {
+  const double low = found - kDeviations95 * deviation, high = found + kDeviations95 * deviation;
+  return {std::max(low, unknown.low), std::min(high, unknown.high), low >= unknown.low, high <= unknown.high};
+}
+
 Estimate estimateOf(CurveModel& model, const CurveFit& fit, int p, double correlation, double law_error, bool profile) {
   const CurveModel::Unknown& unknown = model.unknowns()[static_cast<std::size_t>(p)];
   const double deviation = std::sqrt(correlation * fit.covariance(p, p));
-  ProfileInterval interval{fit.internal[p] - kDeviations95 * deviation, fit.internal[p] + kDeviations95 * deviation};
+  ProfileInterval interval = curvatureInterval(unknown, fit.internal[p], deviation);
   if (profile && deviation > 0) interval = profileInterval(model, fit, p, 0.5 * kChiSquared95 * correlation, deviation);
   // What the law is off by is the modulus's, too.
   if (unknown.name == "young_modulus") {
@@ -111,9 +117,13 @@ Estimate estimateOf(CurveModel& model, const CurveFit& fit, int p, double correl
     interval.low = fit.internal[p] - std::hypot(fit.internal[p] - interval.low, law);
     interval.high = fit.internal[p] + std::hypot(interval.high - fit.internal[p], law);
   }
-  return {
-      unknown.name,    unknown.unit, unknown.si(fit.internal[p]), unknown.si(interval.low), unknown.si(interval.high),
-      interval.bounded};
+  return {unknown.name,
+          unknown.unit,
+          unknown.si(fit.internal[p]),
+          unknown.si(interval.low),
+          unknown.si(interval.high),
+          interval.bounded_below,
+          interval.bounded_above};
 }
 
 /// The law with the parameters of the best fit, against the rivals.
@@ -169,8 +179,9 @@ Identification identifyWith(const ForceCurve& curve, const std::shared_ptr<Elast
   for (std::size_t p = 0; p < model.unknowns().size(); ++p) {
     if (model.unknowns()[p].low == model.unknowns()[p].high) continue;
     result.estimates.push_back(estimateOf(model, fit, static_cast<int>(p), correlation, law_error, config.intervals));
-    if (result.estimates.back().bounded) continue;
-    result.warnings.push_back(result.estimates.back().name + " is not bounded by this record on one side");
+    const Estimate& last = result.estimates.back();
+    if (!last.bounded())
+      result.warnings.push_back(last.name + " is open " + last.open() + ": this record does not bound it");
   }
   residualsOf(model, fit.internal);  // the law is that of the best fit again
   const double contact = result.find("contact")->value;
@@ -218,6 +229,11 @@ std::optional<std::size_t> samplesInContact(const ForceCurve& curve) {
 
 }  // namespace
 
+std::string Estimate::open() const {
+  if (bounded()) return "";
+  return bounded_below ? "above" : bounded_above ? "below" : "on both sides";
+}
+
 bool Identification::consistent() const {
   if (rivals && rivals->contradicts()) return false;
   return misfit < kLeastMisfit * size || misfit < kSignificant * scatter;
@@ -231,7 +247,7 @@ const Estimate* Identification::find(const std::string& name) const {
 const Estimate* Identification::undetermined() const {
   const auto found = std::find_if(estimates.begin(), estimates.end(), [](const Estimate& x) {
     const bool of_record = x.name == "offset" || x.name == "drift";
-    return !of_record && !(x.bounded && x.low < x.high && std::isfinite(x.high - x.low));
+    return !of_record && !(x.bounded() && x.low < x.high && std::isfinite(x.high - x.low));
   });
   return found == estimates.end() ? nullptr : &*found;
 }

@@ -17,7 +17,12 @@ struct Estimate {
   std::string name, unit;
   double value = 0;
   double low = 0, high = 0;  ///< interval of 95 %
-  bool bounded = true;       ///< else the record does not bound it on one side: the border of the search is given
+  /// Else the record does not bound it on that side: the border of the search is given.
+  bool bounded_below = true, bounded_above = true;
+
+  bool bounded() const { return bounded_below && bounded_above; }
+  /// "below", "above" or "on both sides"; empty: bounded.
+  std::string open() const;
 };
 
 /// What a record says about a cell under one model. A fit gives numbers also with a wrong model, so the result has what

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "cell/material/material_parameter.h"
 #include "cell/model/scene.h"
 
 namespace microinjection {
@@ -64,6 +65,12 @@ std::string identifiedScene(const std::string& scene_path, const std::string& re
     node["needle"]["tip"]["radius"] = radius * ratio->value;
   if (const Estimate* ratio = identification.find("poisson_ratio")) {
     for (std::size_t i = 0; i < scene.cell.layers.size(); ++i) materialOf(cell, i)["poisson_ratio"] = ratio->value;
+  }
+  for (const MaterialParameter& each : materialParameters()) {
+    const Estimate* const found = each.ofAllModels() ? nullptr : identification.find(each.name);
+    for (std::size_t i = 0; found && i < scene.cell.layers.size(); ++i) {
+      if (scene.cell.layers[i].material.model == each.model) materialOf(cell, i)[each.name] = found->value;
+    }
   }
   parseScene(node, "the identified scene");
   std::ostringstream out;

@@ -48,7 +48,7 @@ ProfileInterval profileInterval(CurveModel& model, const CurveFit& best, int unk
                                     std::clamp((wanted - inside_root) / (outside_root - inside_root), 0.05, 0.95);
     }
     (side < 0 ? result.low : result.high) = centre + side * distance;
-    result.bounded = result.bounded && !open;
+    (side < 0 ? result.bounded_below : result.bounded_above) = !open;
   }
   return result;
 }

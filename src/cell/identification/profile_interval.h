@@ -10,7 +10,7 @@ constexpr double kChiSquared95 = 3.841;
 /// Interval of an unknown, internal units.
 struct ProfileInterval {
   double low = 0, high = 0;
-  bool bounded = true;  ///< else a border is that of the search
+  bool bounded_below = true, bounded_above = true;  ///< else that border is the search's
 };
 
 /// Where the best fit with this unknown held has a cost that is `rise` above the smallest one (profile

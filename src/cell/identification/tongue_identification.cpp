@@ -180,7 +180,7 @@ Identification identifyTongue(const TongueRecord& record, const Scene& scene, co
                at_high = misfitOf(record, scene.radius(), shape, std::exp(high)).offset;
   result.estimates = {
       {"young_modulus", "Pa", std::exp(found), std::exp(low) * (1 - by_shape), std::exp(high) * (1 + by_shape),
-       bounded_below && bounded_above},
+       bounded_below, bounded_above},
       {"offset", "m", misfit.offset, std::min(at_low, at_high) - spread, std::max(at_low, at_high) + spread, true}};
   result.noise = noise;
   result.independent = count;

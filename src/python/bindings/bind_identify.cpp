@@ -30,7 +30,7 @@ py::dict toDict(const Identification& found) {
     estimate["value"] = each.value;
     estimate["low"] = each.low;
     estimate["high"] = each.high;
-    estimate["bounded"] = each.bounded;
+    estimate["bounded"] = each.bounded();
     estimate["unit"] = each.unit;
     estimates[py::str(each.name)] = estimate;
   }
