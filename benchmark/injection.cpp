@@ -1,4 +1,5 @@
-// Automatic injection of 200 random cells: noisy force sensor, lagging rig, virtual time.
+// Automatic injection of 200 random cells: noisy force sensor, lagging rig, virtual time. The same of cells that are
+// pierced by mechanics, against a force at which they fail.
 
 #include <algorithm>
 #include <array>
@@ -16,6 +17,8 @@
 #include "benchmark/bench_main.h"
 #include "benchmark/common/detection_figures.h"
 #include "benchmark/common/surrogate_scene.h"
+#include "cell/family/family_cell.h"
+#include "cell/model/solved_branch.h"
 #include "trial/injection_case.h"
 #include "trial/injection_rig.h"
 
@@ -23,21 +26,30 @@ namespace microinjection {
 namespace {
 
 constexpr char kScene[] = MICROINJECTION_SOURCE_DIR "/config/cells/mouse_oocyte_pipette.yaml";
+constexpr char kToughScene[] = MICROINJECTION_SOURCE_DIR "/config/cells/mouse_oocyte_tough.yaml";
 constexpr char kRig[] = MICROINJECTION_SOURCE_DIR "/urdf/rig.urdf";
 constexpr double kLongest = 180;  ///< s of virtual time
 constexpr double kKnownTo = 0.2;  ///< deviation of the logarithm of an expected strength, in the profiles
 
 double known_to = 0;  ///< the same of the random cells; 0: nothing is expected
 
+std::shared_ptr<const SurrogateData> familyMember(const Scene& scene) {
+  std::string refusal;
+  const auto member = findFamilyCell(MICROINJECTION_SOURCE_DIR "/config/families", scene, refusal);
+  if (!member) throw std::runtime_error(refusal);
+  return member->data;
+}
+
 struct Bench {
-  Scene scene = loadScene(kScene);
-  std::shared_ptr<const SurrogateData> prepared = std::make_shared<const SurrogateData>(surrogateScene(scene, kScene));
+  Scene scene;
+  std::shared_ptr<const SurrogateData> prepared;
   ManipulatorGeometry geometry;
   SimulatedManipulatorConfig manipulator;
 
   /// @param manipulator_file  config file of the micromanipulator; empty: the ideal device with a
   /// lag
-  explicit Bench(const std::string& manipulator_file) {
+  Bench(const std::string& manipulator_file, const Scene& of, std::shared_ptr<const SurrogateData> data)
+      : scene(of), prepared(std::move(data)) {
     std::ifstream file(kRig);
     std::ostringstream text;
     text << file.rdbuf();
@@ -57,8 +69,9 @@ struct Outcome {
   bool good() const { return punctured && withdrawn && within; }
 };
 
-Outcome inject(const Bench& bench, const InjectionCase& of, const InjectionRig::Disturbance& disturbance = {}) {
-  ScaledCell cell(bench.scene, bench.prepared, of.cell);
+Outcome inject(const Bench& bench, const InjectionCase& of, const InjectionRig::Disturbance& disturbance = {},
+               const std::optional<PiercedBranch>& branch = {}) {
+  ScaledCell cell(bench.scene, bench.prepared, of.cell, {}, branch);
   InjectionRig::Config config;
   config.controller = injectionSettings(of);
   config.disturbance = disturbance;
@@ -130,6 +143,23 @@ void summarise(const std::vector<Outcome>& all) {
                  o.of.cell.puncture.layers.front().force, o.of.cell.puncture.layers.size(), o.truth.punctures,
                  o.result.punctures, toText(o.result.outcome), o.result.reason.c_str());
   }
+}
+
+/// What follows the failure.
+void summariseFailure(const std::vector<Outcome>& all) {
+  std::vector<Outcome> failed;
+  for (const Outcome& o : all) {
+    if (o.truth.zona_depth) failed.push_back(o);
+  }
+  const long missed = std::count_if(failed.begin(), failed.end(),
+                                    [](const Outcome& o) { return o.result.punctures < o.truth.punctures; });
+  std::fprintf(stderr, "injection: %zu of %zu cells fail; %ld of these failures are missed to the end\n", failed.size(),
+               all.size(), missed);
+  if (failed.empty()) return;
+  medianAndWorst(failed, "way on, behind the failure", "diameters",
+                 [](const Outcome& o) { return (o.truth.max_depth - *o.truth.zona_depth) / o.of.cell.diameter; });
+  medianAndWorst(failed, "peak force", "of that at which it fails",
+                 [](const Outcome& o) { return o.truth.peak_force / o.of.cell.puncture.layers.front().force; });
 }
 
 /// The cell of the profiles: the mouse oocyte with half of its force relaxing, zona at 1.2 uN.
@@ -216,7 +246,8 @@ void disturbances(const Bench& bench, int first_seed, int cells) {
 }
 
 std::string table(int first_seed, int cells, const std::string& manipulator_file) {
-  const Bench bench(manipulator_file);
+  const Scene scene = loadScene(kScene);
+  const Bench bench(manipulator_file, scene, std::make_shared<const SurrogateData>(surrogateScene(scene, kScene)));
   std::string text =
       "seed,diameter_m,young_modulus_Pa,punctured,withdrawn,peak_force_N,max_depth_m,detection_latency_s,"
       "false_detections,outcome\n";
@@ -235,6 +266,54 @@ std::string table(int first_seed, int cells, const std::string& manipulator_file
   return text;
 }
 
+/// A random cell whose only membrane fails at the force of the branch's onset.
+InjectionCase caseAtOnset(int seed, const Scene& scene, const PiercedBranch& branch) {
+  InjectionCase of = randomInjectionCase(seed);
+  PunctureConfig& puncture = of.cell.puncture;
+  const double length = 0.5 * of.cell.diameter / scene.radius();
+  const double scale = length * length * of.cell.young_modulus / scene.cell.material().young_modulus;
+  const double friction = puncture.shaft.friction / puncture.layers.front().force;
+  puncture.layers = PunctureConfig::atForce(scale * branch.onset()->force).layers;
+  puncture.shaft.friction = friction * puncture.layers.front().force;
+  puncture.shaft.coefficient = scene.cell.puncture.shaft.coefficient;
+  return of;
+}
+
+/// Each cell twice, with the same sensor noise: it fails at a force, or is pierced by mechanics with its onset there.
+std::string laws(int first_seed, int cells, const std::string& manipulator_file, const std::vector<double>& toughness) {
+  const Scene shipped = loadScene(kToughScene);
+  const auto member = familyMember(shipped);
+  std::string text =
+      "law,toughness,seed,diameter_m,young_modulus_Pa,punctured,withdrawn,peak_force_N,max_depth_m,"
+      "detection_latency_s,false_detections,outcome\n";
+  for (const double factor : toughness) {
+    Scene scene = shipped;
+    scene.cell.puncture.layers.front().toughness *= factor;
+    const PiercedBranch branch = storedPiercedBranch(scene);
+    if (!branch.onset()) throw std::runtime_error("no depth that is solved pierces that toughness");
+    const Bench bench(manipulator_file, scene, member);
+    for (const bool by_mechanics : {false, true}) {
+      const std::string name = by_mechanics ? "mechanics" : "force";
+      std::vector<Outcome> all;
+      for (int seed = first_seed; seed < first_seed + cells; ++seed) {
+        const InjectionCase of = caseAtOnset(seed, scene, branch);
+        all.push_back(by_mechanics ? inject(bench, of, {}, branch) : inject(bench, of));
+        char law[50];
+        std::snprintf(law, sizeof law, "%s,%.4g,", name.c_str(), factor);
+        text += law + row(all.back());
+      }
+      std::fprintf(stderr,
+                   "injection: %s, toughness %.4g of the scene's: onset at %.3g uN, %.3g uN behind it, of a cell of "
+                   "the scene's\n",
+                   name.c_str(), factor, 1e6 * branch.onset()->force, 1e6 * branch.onset()->pierced_force);
+      summarise(all);
+      summariseFailure(all);
+    }
+  }
+  std::cout << text;
+  return text;
+}
+
 }  // namespace
 }  // namespace microinjection
 
@@ -242,6 +321,7 @@ int main(int argc, char** argv) {
   namespace po = boost::program_options;
   int first_seed = 1, cells = 200;
   std::string manipulator;
+  std::vector<double> toughness;
   po::options_description options;
   options.add_options()("cells", po::value(&cells)->default_value(200), "how many")(
       "first-seed", po::value(&first_seed)->default_value(1), "of the cells; settings were chosen with those from 1")(
@@ -249,11 +329,17 @@ int main(int argc, char** argv) {
       "the controller expects the zona's force with this standard deviation of its logarithm; 0: it expects nothing")(
       "manipulator", po::value(&manipulator),
       "configuration file of the micromanipulator, e.g. config/rigs/imperfect.yaml; else an ideal one with a "
-      "lag");
+      "lag")("toughness", po::value(&toughness)->multitoken(),
+             "in place of all else, each cell by a force and by mechanics, with these toughnesses over that of "
+             "config/cells/mouse_oocyte_tough.yaml");
   return microinjection::benchMain(
       argc, argv,
       "injection: automatic injection of random cells, scaled from the prepared "
       "config/cells/mouse_oocyte_pipette.yaml\n"
       "(which is prepared first where it is not: minutes, once)",
-      [&] { return microinjection::table(first_seed, cells, manipulator); }, options);
+      [&] {
+        return toughness.empty() ? microinjection::table(first_seed, cells, manipulator)
+                                 : microinjection::laws(first_seed, cells, manipulator, toughness);
+      },
+      options);
 }

@@ -176,7 +176,11 @@ class Simulation {
   void stepRig(double now) {
     for (const LinkPacket& packet : wave_forward_.receive(now)) wave_follower_.receive(packet);
     for (const Packet& packet : forward_.receive(now)) goal_inbox_.receive(packet);
+    const double touched_before = touch_;
     touch_ = touch(now);
+    touched_energy_ -= 0.5 * (touched_before + touch_) * (needle_ - touched_at_);
+    touched_at_ = needle_;
+    result_.touched_energy_min = std::min(result_.touched_energy_min, touched_energy_);
     const Eigen::Vector3d force(0, 0, touch_);
     const double scale = loop_.bridge.motion.position_scale;
     std::optional<Eigen::Vector3d> goal;
@@ -209,13 +213,14 @@ class Simulation {
   LinkFollower wave_follower_;
   LinkEmulator<LinkPacket> wave_forward_, wave_back_;
   LinkEmulator<Packet> forward_, back_;
-  double needle_;           ///< m, at the hand's scale
-  double wanted_ = kFree;   ///< m, at the hand's scale, by the bridge
-  double deep_ = 0;         ///< m, below the surface, where the hand means to be
-  double hand_speed_ = 0;   ///< m/s
-  double true_energy_ = 0;  ///< J
-  double touch_ = 0;        ///< N, of what is touched
-  double last_force_ = 0;   ///< N
+  double needle_;                                   ///< m, at the hand's scale
+  double wanted_ = kFree;                           ///< m, at the hand's scale, by the bridge
+  double deep_ = 0;                                 ///< m, below the surface, where the hand means to be
+  double hand_speed_ = 0;                           ///< m/s
+  double true_energy_ = 0;                          ///< J
+  double touch_ = 0;                                ///< N, of what is touched
+  double touched_at_ = kFree, touched_energy_ = 0;  ///< m, J, of the needle there and of what it has given
+  double last_force_ = 0;                           ///< N
   TeleoperationLoop::Result result_;
 };
 

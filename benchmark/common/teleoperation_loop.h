@@ -52,6 +52,7 @@ struct TeleoperationLoop {
     double late_over_early = 0;      ///< 1, over the rms in the second before
     double contact_force = 0;        ///< N, mean over the last second of the first hold, on the hand
     double needle_force = 0;         ///< N, of what is touched, in the same time, at the hand's scale
+    double touched_energy_min = 0;   ///< J, of what is touched, got from the needle, at the hand's scale
     std::vector<Sample> samples;
   };
 

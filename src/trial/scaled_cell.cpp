@@ -29,7 +29,7 @@ PunctureConfig onPrepared(PunctureConfig puncture, double length, double force) 
 }  // namespace
 
 ScaledCell::ScaledCell(const Scene& scene, std::shared_ptr<const SurrogateData> prepared, const Properties& properties,
-                       const std::optional<BoreTongue>& tongue) {
+                       const std::optional<BoreTongue>& tongue, std::optional<PiercedBranch> branch) {
   const double radius = 0.5 * properties.diameter, modulus = scene.cell.material().young_modulus;
   length_ = radius / scene.radius();
   force_ = properties.young_modulus / modulus * length_ * length_;
@@ -38,8 +38,8 @@ ScaledCell::ScaledCell(const Scene& scene, std::shared_ptr<const SurrogateData> 
   here.cell.material().viscoelasticity.prony = properties.prony;
   here.cell.puncture = onPrepared(properties.puncture, length_, force_);
   if (properties.bore_radius > 0) here.needle.bore_radius = properties.bore_radius / length_;
-  cell_ =
-      std::make_unique<PuncturableCell>(here, std::make_unique<SurrogateCellModel>(here, std::move(prepared)), tongue);
+  cell_ = std::make_unique<PuncturableCell>(here, std::make_unique<SurrogateCellModel>(here, std::move(prepared)),
+                                            tongue, std::move(branch));
 }
 
 void ScaledCell::setBoreLine(const CellModel::BoreLine& line) {

@@ -26,8 +26,9 @@ class ScaledCell {
 
   /// @param scene  of `prepared`: one layer, elastic
   /// @param tongue of a needle with the wanted cell's bore; none: nothing is drawn in
+  /// @param branch of `scene` with the wanted cell's toughness over E R, for a first layer with a toughness
   ScaledCell(const Scene& scene, std::shared_ptr<const SurrogateData> prepared, const Properties& properties,
-             const std::optional<BoreTongue>& tongue = {});
+             const std::optional<BoreTongue>& tongue = {}, std::optional<PiercedBranch> branch = {});
 
   /// N, on a tip at `tip` (m), upright, at `time` (s).
   Eigen::Vector3d step(const Eigen::Vector3d& tip, double time);

@@ -44,7 +44,7 @@ Values valuesOf(const std::vector<PiercedBranch::Knot>& knots, double beyond) {
 
 PiercedBranch::PiercedBranch(std::vector<Knot> whole, std::vector<Hole> holes, double cost, double barrier,
                              double wall_force)
-    : whole_(std::move(whole)), holes_(std::move(holes)), cost_(cost), wall_force_(wall_force) {
+    : whole_(std::move(whole)), holes_(std::move(holes)), cost_(cost), wall_force_(wall_force), barrier_(barrier) {
   const auto rises = [](const std::vector<Knot>& knots) {
     const auto falls = [](const Knot& a, const Knot& b) { return !(a.beyond < b.beyond); };
     return knots.size() >= 2 && std::adjacent_find(knots.begin(), knots.end(), falls) == knots.end();
@@ -55,7 +55,7 @@ PiercedBranch::PiercedBranch(std::vector<Knot> whole, std::vector<Hole> holes, d
   if (!good)
     throw std::invalid_argument("a pierced branch needs two holes or more of rising length, with rising knots");
   for (const Hole& hole : holes_) furthest_ = std::max(furthest_, hole.knots.back().beyond);
-  onset_ = findOnset(barrier);
+  onset_ = findOnset();
 }
 
 PiercedBranch::State PiercedBranch::whole(double depth) const {
@@ -90,13 +90,14 @@ PiercedBranch::State PiercedBranch::at(double depth, double length) const {
     return (1 + 2 * t) * u * u * pick(v[1]) + t * u * u * width * slope(1, pick) + t * t * (3 - 2 * t) * pick(v[2]) -
            t * t * u * width * slope(2, pick);
   };
-  const double along = 6 * t * u * (v[2].energy - v[1].energy) / width + u * (1 - 3 * t) * slope(1, energy) +
-                       t * (3 * t - 2) * slope(2, energy);  // derivative by the length, at a fixed place beyond
+  const auto along = [&](const auto& pick) {  // derivative by the length, at a fixed place beyond
+    return 6 * t * u * (pick(v[2]) - pick(v[1])) / width + u * (1 - 3 * t) * slope(1, pick) +
+           t * (3 * t - 2) * slope(2, pick);
+  };
   State state;
-  state.force = cubic(force);
-  state.energy = cubic(energy);
-  state.energy += along * (length - inside);
-  state.release = state.force - along;
+  state.force = cubic(force) + along(force) * (length - inside);
+  state.energy = cubic(energy) + along(energy) * (length - inside);
+  state.release = state.force - along(energy);
   return state;
 }
 
@@ -117,7 +118,7 @@ double PiercedBranch::grown(double depth, double length) const {
   return high;
 }
 
-std::optional<PiercedBranch::Onset> PiercedBranch::findOnset(double barrier) const {
+std::optional<PiercedBranch::Onset> PiercedBranch::findOnset() const {
   struct Length {
     double length = 0, excess = 0;  // m; J, energy and cost above the whole cell's energy
   };
@@ -125,7 +126,7 @@ std::optional<PiercedBranch::Onset> PiercedBranch::findOnset(double barrier) con
     Length least{0, std::numeric_limits<double>::infinity()};
     for (int i = 0; i <= kLengths; ++i) {
       const double length = shortest() + (longest() - shortest()) * i / kLengths;
-      const double excess = at(depth, length).energy + cost_ * length + barrier - whole(depth).energy;
+      const double excess = at(depth, length).energy + cost_ * length + barrier_ - whole(depth).energy;
       if (excess < least.excess) least = {length, excess};
     }
     return least;

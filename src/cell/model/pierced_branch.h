@@ -52,8 +52,8 @@ class PiercedBranch {
 
   State whole(double depth) const;  ///< its release is 0
 
-  /// Constant forces are taken below the first knot of a path, and a constant stiffness beyond its last one; shorter
-  /// holes than the first have its energy less the release along the shaft.
+  /// Constant forces are taken below the first knot of a path, and a constant stiffness beyond its last one. Energy and
+  /// force are continued linearly in the length to shorter holes than the first and longer ones than the last.
   State at(double depth, double length) const;
 
   /// None: the whole cell's path ends before.
@@ -65,15 +65,16 @@ class PiercedBranch {
   double shortest() const { return holes_.front().length; }  ///< m
   double longest() const { return holes_.back().length; }    ///< m
   double cost() const { return cost_; }                      ///< N
+  double barrier() const { return barrier_; }                ///< J
   double wallForce() const { return wall_force_; }           ///< N/m
   const std::vector<Hole>& holes() const { return holes_; }
 
  private:
-  std::optional<Onset> findOnset(double barrier) const;
+  std::optional<Onset> findOnset() const;
 
   std::vector<Knot> whole_;
   std::vector<Hole> holes_;
-  double cost_, wall_force_;
+  double cost_, wall_force_, barrier_;
   double furthest_ = 0;  ///< m, beyond the bottom, that the furthest of the paths reaches
   std::optional<Onset> onset_;
 };

@@ -9,8 +9,8 @@ namespace microinjection {
 
 namespace {
 
-/// Depth, in radii of the tip, at which a hole has taken in the tip's end.
-constexpr double kMouth = 1.5;
+constexpr double kMouth = 1.5;  ///< radii of the tip, of way in which a hole takes in its end
+constexpr int kEnergySteps = 32;
 
 PunctureConfig punctureOf(const Scene& scene, const std::optional<PiercedBranch>& branch) {
   PunctureConfig config = scene.cell.puncture;
@@ -105,6 +105,7 @@ TipForce PuncturableCell::computeForce(const Pose& pose) {
       work_ = 0;
       strength_ = 1;
       enter(*hole, pose);
+      mouth_from_ = insertion_.depth;
     }
   }
   if (!hole_) return contactForce(pose);
@@ -132,18 +133,14 @@ TipForce PuncturableCell::contactForce(const Pose& pose) {
   if (!failed) return result;
   PunctureHoles::Hole opened;
   opened.position = contact->contact_point;
-  Eigen::Vector3d lost = result.force;
-  double returned = workTo(result.force, pose.tip);
+  const double work = workTo(result.force, pose.tip);
   if (branch_) {
-    const double depth = (opened.position - pose.tip).dot(pose.axis);
-    opened.length = branch_->grown(depth, branch_->onset()->length);
-    const PiercedBranch::State pierced = branch_->at(depth, opened.length);
-    struck_ = pulse_.has_value();
-    lost -= branchForce(depth, opened.length, pose) * pose.axis;
-    returned =
-        std::clamp(branch_->whole(depth).energy - pierced.energy - branch_->cost() * opened.length, 0.0, returned);
+    const double first = branch_->onset() ? branch_->onset()->length : branch_->shortest();
+    opened.length = branch_->grown((opened.position - pose.tip).dot(pose.axis), first);
+    loseToBranch(opened, result.force, work, pose);
+  } else {
+    fading_.start(result.force, pose.tip, work, pose.time);
   }
-  fading_.start(lost, pose.tip, returned, pose.time);
   const int hole = resealed_ ? *resealed_ : holes_.add(opened);
   holes_[hole] = opened;
   published_holes_.write(holes_);
@@ -152,6 +149,17 @@ TipForce PuncturableCell::contactForce(const Pose& pose) {
   enter(hole, pose);
   failLayer(pose);
   return result;
+}
+
+void PuncturableCell::loseToBranch(const PunctureHoles::Hole& opened, const Eigen::Vector3d& force, double work,
+                                   const Pose& pose) {
+  const double depth = (opened.position - pose.tip).dot(pose.axis);
+  mouth_from_ = 0;
+  if (openingEnergy(depth, opened.length) > work) mouth_from_ = depth;
+  const double released = branch_->whole(depth).energy - branch_->at(depth, opened.length).energy -
+                          branch_->cost() * opened.length - branch_->barrier();
+  const double kept = work - openingEnergy(depth, opened.length);
+  fading_.start(force - openingForce(depth, opened.length) * pose.axis, pose.tip, std::min(released, kept), pose.time);
 }
 
 void PuncturableCell::followRadius() {
@@ -168,11 +176,11 @@ Eigen::Vector3d PuncturableCell::forceInside(const Pose& pose) {
   const double behind = branch_ ? std::min(insertion_.depth, holes_[*hole_].length) : insertion_.depth;
   const double length = isThrough() ? (behind - next_layer_depth_) * -std::expm1(-std::max(age, 0.0)) : 0;
   const Eigen::Vector3d shaft = shaft_.step(pose.tip, pose.axis, length, pose.duration);
+  const Eigen::Vector3d stays = branch_ ? Eigen::Vector3d(shaft + pierce(pose) * pose.axis) : shaft;
   Eigen::Vector3d others = fading_.at(pose.tip, pose.time);
-  if (branch_) others += pierce(pose) * pose.axis;
   if (isThrough()) {
     coverBore(layerCount());
-    return others + shaft;
+    return others + stays;
   }
   const Layer& layer = config_.layers[holes_[*hole_].layers];
   const double pushed = std::max(insertion_.depth - next_layer_depth_, 0.0), push = layer.stiffness * pushed;
@@ -180,10 +188,11 @@ Eigen::Vector3d PuncturableCell::forceInside(const Pose& pose) {
   const double left = strength_ * strength();
   others += std::min(push, left * layer.force) * pose.axis;
   if (drawn_through_ || fails(layer, push, pushed, left)) {
-    fading_.start(others, pose.tip, workTo(others + shaft, pose.tip), pose.time);
+    const double stored = branch_ ? openingEnergy(insertion_.depth, holes_[*hole_].length) : 0;
+    fading_.start(others, pose.tip, workTo(others + stays, pose.tip) - stored, pose.time);
     failLayer(pose);
   }
-  return others + shaft;
+  return others + stays;
 }
 
 double PuncturableCell::pierce(const Pose& pose) {
@@ -191,14 +200,21 @@ double PuncturableCell::pierce(const Pose& pose) {
   const double depth = insertion_.depth;
   hole.length = branch_->grown(depth, hole.length);
   cell_->step(pose.tip + std::min(hole.length, depth) * pose.axis, pose.axis, pose.time);
-  return branchForce(depth, hole.length, pose);
+  return openingForce(depth, hole.length);
 }
 
-double PuncturableCell::branchForce(double depth, double length, const Pose& pose) const {
-  const double force = std::clamp(depth / (kMouth * tip_.radius), 0.0, 1.0) * branch_->at(depth, length).force;
-  const double out = (pose.tip - last_tip_).dot(pose.axis);
-  if (!struck_ || out <= 0) return force;
-  return std::clamp(2 * work_ / out - last_force_.dot(pose.axis), 0.0, std::max(force, 0.0));
+/// A needle that has made the hole stands in it with the whole of its force.
+double PuncturableCell::openingForce(double depth, double length) const {
+  const double mouth = std::min(kMouth * tip_.radius, branch_->onset() ? branch_->onset()->depth : HUGE_VAL);
+  return std::clamp((depth - mouth_from_) / mouth, 0.0, 1.0) * branch_->at(depth, length).force;
+}
+
+/// By the trapezoidal rule.
+double PuncturableCell::openingEnergy(double depth, double length) const {
+  const double step = (depth - mouth_from_) / kEnergySteps;
+  double sum = openingForce(depth, length) / 2;
+  for (int i = 1; i < kEnergySteps; ++i) sum += openingForce(mouth_from_ + i * step, length);
+  return sum * std::max(step, 0.0);
 }
 
 void PuncturableCell::enter(int hole, const Pose& pose) {
@@ -217,7 +233,6 @@ void PuncturableCell::leave(const Pose& pose) {
   if (std::isfinite(config_.resealing_time)) holes_[*hole_].left = pose.time;
   if (branch_) cell_->release();
   hole_.reset();
-  struck_ = false;
   coverBore(-1);
   strength_ = 1;
   in_contact_.reset();
@@ -265,7 +280,6 @@ double PuncturableCell::clearance(const Eigen::Vector3d& tip, const Eigen::Vecto
 void PuncturableCell::release() {
   cell_->release();
   hole_.reset();
-  struck_ = false;
   pulse_.reset();
   coverBore(-1);
   in_contact_.reset();

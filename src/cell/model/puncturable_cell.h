@@ -39,10 +39,12 @@ namespace microinjection {
 /// With a PiercedBranch the outermost layer is a solid of known toughness. It fails at the force of the branch's onset,
 /// and the needle then feels the branch's force along the pipette: the hole grows with the needle, the dent stays as
 /// deep as the branch has it, and its wall rubs on the shaft. The branch is that of a needle on the axis; elsewhere its
-/// depth is counted along the pipette. Each further layer is a linear spring along the pipette from the point where the
-/// tip meets it. It was dented together with the earlier layers and lies its gap ahead of the tip when they fail. It
-/// stays there while the needle is in the cell; after the needle has left, all layers are at their gaps below the
-/// surface. In the cell, ShaftResistance acts on the shaft. The cytoplasm begins at the innermost layer.
+/// depth is counted along the pipette. Where the needle enters a hole, the force grows from nothing. It does so, too,
+/// where a layer fails before the needle has given the energy that the branch has stored there: it was drawn through,
+/// a piezo has broken it, or it had only resealed. Each further layer is a linear spring along the pipette from the
+/// point where the tip meets it. It was dented together with the earlier layers and lies its gap ahead of the tip when
+/// they fail. It stays there while the needle is in the cell; after the needle has left, all layers are at their gaps
+/// below the surface. In the cell, ShaftResistance acts on the shaft. The cytoplasm begins at the innermost layer.
 ///
 /// A tip in a hole is in the cell until it leaves through the hole, or beside it off the cell. A
 /// needle line that passes within the tip's radius of a hole meets the next intact layer there;
@@ -57,7 +59,8 @@ namespace microinjection {
 /// of the layer before the tip when it asks whether that fails, and its work is the piezo's.
 ///
 /// A lost force fades (FadingForce) from its value in that step, so that the needle feels no step.
-/// It returns at most the work of the needle since first contact. The remaining forces are passive.
+/// It returns at most the work of the needle since first contact, less what a branch has stored and its crack has
+/// spent. The remaining forces are passive.
 class PuncturableCell : public CellModel {
  public:
   /// `cell`: the model of the same scene's cell without a puncture. @pre scene.validate() does not throw
@@ -99,10 +102,12 @@ class PuncturableCell : public CellModel {
   TipForce contactForce(const Pose& pose);
   void followRadius();  ///< moves the holes with a surface whose radius has changed
   Eigen::Vector3d forceInside(const Pose& pose);
-  double pierce(
-      const Pose& pose);  ///< N along the pipette, of the branch, whose hole grows; and the dent that is drawn
-  /// N along the pipette. A hole that a piezo has begun may hold more than the hand has given, which it does not get.
-  double branchForce(double depth, double length, const Pose& pose) const;
+  /// N along the pipette, of the branch, whose hole grows; and the dent that is drawn.
+  double pierce(const Pose& pose);
+  double openingForce(double depth, double length) const;   ///< N along the pipette, of the branch
+  double openingEnergy(double depth, double length) const;  ///< J, that this force has stored since the mouth
+  /// What is lost where the branch begins. @param work J, of the needle so far
+  void loseToBranch(const PunctureHoles::Hole& opened, const Eigen::Vector3d& force, double work, const Pose& pose);
   void enter(int hole, const Pose& pose);
   void leave(const Pose& pose);
   void failLayer(const Pose& pose);
@@ -132,12 +137,12 @@ class PuncturableCell : public CellModel {
   PunctureHoles holes_;
   std::optional<int> hole_;        ///< hole that the needle is in
   double next_layer_depth_ = 0;    ///< m below the surface, of the next layer; after all have failed, of the last
-  bool struck_ = false;            ///< by a pulse, when the outermost layer failed here
   double failed_at_ = 0;           ///< s, of the last failure in this hole; negative infinity before
   bool inner_force_used_ = false;  ///< the last force was computed by the inner cell
   BoreLine line_;
   std::optional<PiezoPulse> pulse_;  ///< of the next step
   std::optional<PiercedBranch> branch_;
+  double mouth_from_ = 0;  ///< m below the surface, where the needle has entered the hole by the branch
   std::optional<BoreSuction> bore_;
   std::optional<AspiratedMembrane> membrane_;  ///< of the layer before the mouth that suction can break
   int covering_ = -1;                          ///< that layer; the count of layers: cytoplasm; -1: none

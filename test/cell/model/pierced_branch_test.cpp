@@ -62,6 +62,27 @@ TEST(PiercedBranch, ForceAndReleaseAreSlopesOfTheEnergy) {
   }
 }
 
+/// Holes whose bottoms are the stiffer the longer they are.
+TEST(PiercedBranch, HolesBeyondTheSolvedLengthsHaveForcesThatAreSlopes) {
+  std::vector<PiercedBranch::Hole> holes;
+  for (const double length : {1e-6, 3e-6, 7e-6, 15e-6}) {
+    SpringBranch made;
+    made.spring *= 1 + length / 20e-6;
+    holes.push_back({length, made.path(length)});
+  }
+  const PiercedBranch tough(springPath(0), holes, kCrack);
+  constexpr double kStep = 1e-9;
+  for (const double length : {0.6e-6, 2e-6, 11e-6, 19e-6}) {
+    const double depth = length + 7.3e-6;
+    const PiercedBranch::State here = tough.at(depth, length);
+    const auto energy = [&](double d, double l) { return tough.at(d, l).energy; };
+    EXPECT_NEAR(here.force, (energy(depth + kStep, length) - energy(depth - kStep, length)) / (2 * kStep),
+                1e-5 * kCrack);
+    EXPECT_NEAR(here.release, (energy(depth, length - kStep) - energy(depth, length + kStep)) / (2 * kStep),
+                1e-5 * kCrack);
+  }
+}
+
 TEST(PiercedBranch, TheHoleGrowsWithTheNeedleAndNeverShrinks) {
   const PiercedBranch tough = springBranch();
   double length = tough.onset()->length;
