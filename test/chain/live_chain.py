@@ -17,7 +17,7 @@ from killable_nodes import PACKAGE, PATIENCE, RATE, KillableNodes, parameters, r
 from messages import pose, position
 from processes import free_port
 
-TIMEOUT = 1.0  # s, of all inputs: a machine that stalls must not hold the needle
+TIMEOUT = 3.0  # s, of all inputs: more than a machine stands still; who was stopped waits for a pause of the stream
 
 
 def until(condition, what):

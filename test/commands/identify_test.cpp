@@ -212,8 +212,8 @@ TEST_F(IdentifyCommand, ARecordIsFittedByTheSolutionOfASceneThatIsInNoFamily) {
 TEST_F(IdentifyCommand, HowACellStiffensIsFound) {
   writeStiffening("true.yaml", 8);
   writeStiffening("scene.yaml", 4);
-  std::string depths = "0.8e-6";
-  for (int k = 2; k <= 15; ++k) depths += ',' + std::to_string(0.8 * k) + "e-6";
+  std::string depths = "0.4e-6";
+  for (int k = 2; k <= 30; ++k) depths += ',' + std::to_string(0.4 * k) + "e-6";
   const std::string indent = "cd " + directory_ + " && " MICROINJECTION_INDENT " --scene true.yaml --depths " + depths +
                              " --csv solved.csv 2>/dev/null";
   ASSERT_EQ(std::system(indent.c_str()), 0);

@@ -124,6 +124,7 @@ class Guard {
       const ssize_t written = ::write(kLine, stop_ + written_, size_ - written_);
       if (written > 0) {
         written_ += static_cast<std::size_t>(written);
+        last_tick_ = now();  // the time between two stops begins when the first one is in the line
       } else if (written < 0 && errno == EAGAIN) {
         return;
       } else if (written == 0 || errno != EINTR) {
