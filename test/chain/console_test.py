@@ -203,35 +203,20 @@ class ConsoleTest(ConsoleUser, unittest.TestCase):
                 seen = offered_below_image()
                 return seen if seen and len(seen[1]) == count else None
             return self.until(check, f"an image above {count} offered buttons")
-
-        def propose():
-            """Clicks; once more, as a user would, where a machine that stalls has kept an image back for 2 s: the console
-            forgets a place that is not seen anymore."""
-            self.click(place)
-            again = time.monotonic() + 20
-
-            def check():
-                nonlocal again
-                seen = offered_below_image()
-                if seen and len(seen[1]) == 2:
-                    return seen[1]
-                if seen and not seen[1] and time.monotonic() > again:
-                    self.click(place)
-                    again = time.monotonic() + 20
-                return None
-            return self.until(check, "a place that is proposed")
         (left, top, right, bottom), _ = shown(0)
         self.do("mousemove", left + 40, top + 40)
         self.do("click", "--repeat", 2, "--delay", 60, 1)  # a double click proposes nothing
         time.sleep(2)  # more than a double click may take, and than a silent controller is believed
         shown(0)
         place = (left + round(0.3 * (right - left)), top + round(0.6 * (bottom - top)))
-        propose()
+        self.click(place)
+        shown(2)
         operating.publish(OperatingState(state="PAUSED"))
         shown(0)  # who resumes does not resume what a click of before has proposed
         operating.publish(OperatingState(state="ENABLED"))
         shown(0)
-        go, _ = propose()
+        self.click(place)
+        _, (go, _) = shown(2)
         self.assertGreater(console_eye.share_of(GOAL, self.picture), 0)
         self.assertEqual(goals, [])  # before it is confirmed
         self.click(go)

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 namespace microinjection {
 
 /// A pulse of a piezo-driven needle: its tip goes ahead along the pipette as amplitude (1 - cos(pi t / rise_time)) / 2
@@ -25,7 +27,13 @@ struct StrokeResistance {
   /// Brenner), the half behind the membrane; the medium in front of it moves with the needle. Stokes' drag holds as
   /// long as sqrt(eta rise_time / rho) is above R: for 0.2 Pa s and 50 us it is 100 um. It is the force of a membrane
   /// that goes with the tip; a bound for one that gives way sooner.
-  double largestForce(const PiezoPulse& pulse) const;
+  double largestForce(const PiezoPulse& pulse) const {
+    // With p = pi t / rise_time it is elastic + (inertia - elastic) cos p + drag sin p.
+    const double half = pulse.amplitude / 2, pace = M_PI / pulse.rise_time;
+    const double elastic = stiffness * half, drag = 8 * viscosity * tip_radius * half * pace;
+    const double inertia = 4.0 / 3 * kDensity * std::pow(tip_radius, 3) * half * pace * pace;
+    return elastic + std::hypot(inertia - elastic, drag);
+  }
 };
 
 }  // namespace microinjection
