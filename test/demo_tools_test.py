@@ -3,6 +3,7 @@ import os
 import sys
 import unittest
 from pathlib import Path
+from types import SimpleNamespace
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / 'src' / 'tools'))
 sys.path.insert(0, str(Path(__file__).resolve().parent))
@@ -15,6 +16,7 @@ import plot_force_depth  # noqa: E402
 import plot_training  # noqa: E402
 import processes  # noqa: E402
 import screenshot  # noqa: E402
+import session_monitor  # noqa: E402
 from in_folder import InFolder  # noqa: E402
 
 HEADER = ('time_s,phase,depth_m,predicted_axial_N,measured_axial_N,measured_lateral_N,hand_force_N,in_contact,'
@@ -45,6 +47,29 @@ class TrainingPlotTest(InFolder):
             picture = self.folder / 'picture.png'
             plot_training.plot(self.history(*operators), picture)
             self.assertGreater(matplotlib.image.imread(picture).std(), 0.05)
+
+
+class PaceRecordTest(unittest.TestCase):
+    @staticmethod
+    def array(**levels):
+        """A DiagnosticArray of the statuses `NODE: cycle`, and one of another name."""
+        statuses = [SimpleNamespace(name=f'{node}: cycle', level=level) for node, level in levels.items()]
+        return SimpleNamespace(status=[*statuses, SimpleNamespace(name='microscope: images', level=2)])
+
+    def test_a_node_is_slow_by_most_of_its_reports(self):
+        pace = session_monitor.PaceRecord()
+        self.assertEqual((pace.reports(), pace.slow()), (0, []))
+        for a, b in ((0, 1), (1, 1), (0, 0)):
+            pace.add(self.array(a=a, b=b))
+        pace.add(self.array(a=0))
+        self.assertEqual((pace.reports(), pace.slow()), (3, ['b']))
+
+    def test_only_what_came_since_the_beginning_counts(self):
+        pace = session_monitor.PaceRecord()
+        pace.add(self.array(a=1))
+        pace.begin()
+        pace.add(self.array(a=0))
+        self.assertEqual((pace.reports(), pace.slow()), (1, []))
 
 
 class ScreenshotTest(InFolder):

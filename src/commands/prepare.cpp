@@ -17,6 +17,7 @@
 #include "cell/family/mouth_family.h"
 #include "cell/model/scene.h"
 #include "cell/model/similarity.h"
+#include "cell/model/solved_branch.h"
 #include "cell/surrogate/surrogate_data.h"
 #include "cell/surrogate/training_ray.h"
 #include "commands/path_store.h"
@@ -167,6 +168,16 @@ int work(const PrepareArguments& arguments) {
   }
 }
 
+/// What a scene's puncture needs, where it follows from a toughness.
+void preparePuncture(const std::string& path) {
+  const Scene scene = loadScene(path).glued();
+  if (!piercedByMechanics(scene)) return;
+  const PiercedBranch branch = storedPiercedBranch(scene, [](int solved, int count) {
+    std::fprintf(stderr, "prepare: the cell with holes under the needle: path %d of %d\n", solved + 1, count);
+  });
+  std::printf("prepare: %s\n", describePuncture(branch, scene).c_str());
+}
+
 /// Whether a family serves the scene to its requirements.
 bool isServed(const PrepareArguments& arguments) {
   if (arguments.families.empty() || arguments.again) return false;
@@ -183,7 +194,10 @@ bool isServed(const PrepareArguments& arguments) {
 }
 
 int prepare(const PrepareArguments& arguments) {
-  if (arguments.family.file.empty()) return isServed(arguments) ? kDone : Preparing(arguments).run();
+  if (arguments.family.file.empty()) {
+    preparePuncture(arguments.scene);
+    return isServed(arguments) ? kDone : Preparing(arguments).run();
+  }
   if (MouthFamily::kindOf(arguments.family.file)) return prepareMouthFamily(arguments.family), kDone;
   arguments.family.check > 0 ? checkFamily(arguments.family) : prepareFamily(arguments.family);
   return kDone;

@@ -24,7 +24,8 @@ Usage: prepare --scene FILE [--jobs N] [...]
 Takes minutes, shows its progress, and may be interrupted: the next call continues from the finished paths. The data are
 in $XDG_CACHE_HOME (else ~/.cache) under cell_microinjection/surrogates, in a folder named after the cell, the tip and
 the program's version. Cells that differ in scale, or whose moduli and tensions differ by one factor, have the same data.
-Another tip, another ratio of lengths or another ratio of moduli needs its own; another needle offset does not.
+Another tip, another ratio of lengths or another ratio of moduli needs its own; another needle offset does not. A scene
+whose puncture has a toughness is solved with holes first, in a minute.
 
 With --family it solves members of a family of cells, each in minutes, and stores the family's data beside its file (NAME.data
 beside NAME.yaml). Every cell inside of the family is then served at once, without a preparation. The members are where

@@ -34,10 +34,20 @@ TRAINING = ('training.yaml', 'training.png')  # with --trainee
 RVIZ_TIMEOUT = 90    # s of wall time, for rviz to come up
 PHASE_TIMEOUT = 300  # s, for a phase of the motion
 SETTLE = 0.8         # s, for rviz to draw what the nodes have just said
+RATES = (1000, 200, 50)  # Hz, largest of all loops: those of config, and what a slower computer gets
 
 
 class DemoError(Exception):
     """What went wrong, for the user."""
+
+
+class TooSlow(Exception):
+    """This computer does not keep the `rate` (Hz) of the loops of these nodes."""
+
+    def __init__(self, rate, nodes):
+        super().__init__(f'this computer does not keep loops of {rate:g} Hz ({", ".join(nodes)}): the demo begins again with '
+                         'slower ones')
+        self.rate = rate
 
 
 def parse_arguments():
@@ -52,6 +62,10 @@ def parse_arguments():
     parser.add_argument('--clock', choices=('wall', 'virtual'), default='wall',
                         help='wall: live nodes on wall time; virtual: all nodes in one process, many times faster, the same '
                         'bytes in each run, without rviz')
+    parser.add_argument('--rate', type=float,
+                        help='Hz, the largest rate of all loops (rate of a session); else those of config, or 200 or 50 where this '
+                        'computer does not keep them')
+    parser.add_argument('--tried', type=float, help=argparse.SUPPRESS)  # a rate that this computer did not keep
     parser.add_argument('--rig', default='sim',
                         help='sim, a real one: eppendorf, mp285, scientifica, sensapex, transferman, zaber; or emulated_ before '
                         'its name (%(default)s)')
@@ -65,7 +79,10 @@ def parse_arguments():
     parser.add_argument('--no-judge', action='store_true',
                         help='do not compare with the full solution afterwards (a minute or two)')
     parser.add_argument('--close', action='store_true', help='close rviz when the session is over')
-    return parser.parse_args()
+    arguments = parser.parse_args()
+    if arguments.tried and not arguments.rate:
+        arguments.rate = max(rate for rate in RATES if rate < arguments.tried)
+    return arguments
 
 
 def say(text):
@@ -114,7 +131,8 @@ class Demo:
         """The session's keys that differ from config/sessions/default.yaml."""
         return {'cell': self._scene(), 'model': self._arguments.model, 'rig.name': self._arguments.rig,
                 'hand.device': self._arguments.haptic, 'hand.motion': self._arguments.motion.resolve(),
-                'record.folder': self._out, 'record.trainee': self._arguments.trainee}
+                'record.folder': self._out, 'record.trainee': self._arguments.trainee,
+                **({'rate': self._arguments.rate} if self._arguments.rate else {})}
 
     def simulate(self):
         say('simulating the session on virtual time')
@@ -126,9 +144,20 @@ class Demo:
         say(f'starting the session; its log is in {self._logs}')
         self._session = DemoSession(ROOT / 'launch' / 'session.launch', self._logs, self._keys())
         self._session.wait_ready()
+        self._require_pace()
         if not self._arguments.no_rviz:
             self._start_rviz()
+            self._require_pace()
         self._session.monitor.go()
+
+    def _require_pace(self):
+        """@raises TooSlow when this computer does not keep the rate, and there is a slower one"""
+        rate, chosen = self._arguments.rate or RATES[0], self._arguments.rate and not self._arguments.tried
+        if chosen or rate <= RATES[-1]:
+            return
+        slow = self._session.too_slow()
+        if slow:
+            raise TooSlow(rate, slow)
 
     def _start_rviz(self):
         try:
@@ -273,9 +302,12 @@ def main():
     arguments.no_rviz = arguments.no_rviz or arguments.clock == 'virtual'
     for number in (signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, interrupt)
-    demo = Demo(arguments)
+    demo, tried = Demo(arguments), None
     try:
         (run if arguments.clock == 'wall' else simulate)(demo, arguments)
+    except TooSlow as slow:
+        say(slow)
+        tried = slow.rate
     except (DemoError, SessionError, RvizError, full_solution.FullSolutionError, OSError) as error:
         sys.exit(f'demo: {error}')
     except KeyboardInterrupt:
@@ -284,6 +316,10 @@ def main():
         # Taking down is bounded in time; a second Ctrl-C would leave processes behind.
         signal.signal(signal.SIGINT, signal.SIG_IGN)
         demo.close()
+    if tried:
+        # Another process: rospy keeps to the master that it has known first. An ignored signal would stay ignored in it.
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+        os.execv(sys.executable, [sys.executable, *sys.argv, '--tried', str(tried)])
 
 
 if __name__ == '__main__':

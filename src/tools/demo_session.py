@@ -8,6 +8,8 @@ from processes import Child, free_port, wait_until
 from session_monitor import SessionMonitor
 
 START_TIMEOUT = 180  # s of wall time, for the nodes to come up and the cell to be meshed
+PACE_REPORTS = 3     # of each node, one a second; and
+PACE_TIMEOUT = 20    # s of wall time for them: who cannot even report is too slow
 STOP_PATIENCE = 40   # s, for the nodes to end by themselves and the bag to be closed
 
 
@@ -41,6 +43,16 @@ class DemoSession:
             # It is started last, and must not miss the beginning.
             self._wait(lambda: self.monitor.has_subscriber('/cell/predicted_cf', '/session_recorder'),
                        'the recorder does not listen')
+
+    def too_slow(self):
+        """Returns the names of nodes whose loops do not keep their rate on this computer, after some seconds; none: all do."""
+        pace = self.monitor.pace
+        pace.begin()
+
+        def reported():
+            self.check()
+            return pace.reports() >= PACE_REPORTS
+        return pace.slow() if wait_until(reported, PACE_TIMEOUT) else pace.slow() or ['all nodes']
 
     def check(self):
         """@raises SessionError when a node or the launch has died."""

@@ -3,6 +3,31 @@ import sys
 import time
 
 
+class PaceRecord:
+    """Whether the nodes keep the rates of their loops, by what each tells of it once a second."""
+
+    def __init__(self):
+        self._slow = {}  # by node: whether it was too slow, since begin()
+
+    def begin(self):
+        self._slow = {}
+
+    def add(self, message):
+        """@param message  diagnostic_msgs/DiagnosticArray"""
+        for status in message.status:
+            node, _, name = status.name.partition(': ')
+            if name == 'cycle':
+                self._slow.setdefault(node, []).append(status.level != 0)
+
+    def reports(self):
+        """Returns the least number of reports of any node; 0 before the first."""
+        return min(map(len, self._slow.values()), default=0)
+
+    def slow(self):
+        """Returns the nodes that were too slow in most of their reports."""
+        return sorted(node for node, slow in self._slow.items() if 2 * sum(slow) > len(slow))
+
+
 class SessionMonitor:
     """Listens to a session. Create it only when the master answers."""
 
@@ -10,16 +35,19 @@ class SessionMonitor:
         # Imported late, since rospy takes the master's address and the log's folder from the environment at once.
         import rospy
         from cell_microinjection.msg import CellState, InjectionStatus, StringStamped
+        from diagnostic_msgs.msg import DiagnosticArray
         self._rospy = rospy
         rospy.init_node('demo', anonymous=True, disable_signals=True)
         self.phase = None
         self.phase_began = time.monotonic()
         self.state = self.injection = None
         self.punctures, self.volume = 0, 0.0  # felt; m^3, given
+        self.pace = PaceRecord()
         self._subscribers = [rospy.Subscriber('/virtual_hand/phase', StringStamped, self._on_phase, queue_size=10),
                              rospy.Subscriber('/cell/state', CellState, self._on_state, queue_size=1),
                              rospy.Subscriber('/controller/injection_state', InjectionStatus, self._on_injection,
-                                              queue_size=10)]
+                                              queue_size=10),
+                             rospy.Subscriber('/diagnostics', DiagnosticArray, self.pace.add, queue_size=100)]
 
     def _on_phase(self, message):
         self.phase_began = time.monotonic()
