@@ -6,8 +6,14 @@
 namespace microinjection {
 namespace {
 
-constexpr int kShortest = 4, kLongest = 256, kWindows = 7;
+constexpr int kShortest = 4, kLongest = 256;
+constexpr int kLags[] = {0, 1, 2, 4};      ///< windows between those that are compared
+constexpr int kTests = 28;                 ///< a sample, of windows and lags
+constexpr int kSpan = 2048;                ///< samples that are kept
 constexpr int kRough = 64;                 ///< longest window in which the speed may fall to half
+constexpr double kKept = 0.9;              ///< of the speed, in the others
+constexpr double kSteadyShare = 0.4;       ///< of the smallest fall, while the needle goes steadily,
+constexpr int kSettled = 64;               ///< from this many samples after a puncture, whose remaining force falls on
 constexpr double kSmallestAdvance = 1e-9;  ///< m a sample: 1 um/s at 1 kHz
 constexpr double kMissed = 2.05;           ///< normal quantile of one miss in 50
 
@@ -16,8 +22,8 @@ constexpr double kMissed = 2.05;           ///< normal quantile of one miss in 5
 PunctureDetector::PunctureDetector(const ForceNoise& noise, double drop_share, double false_rate, int pause)
     : deviation_(noise.deviation()),
       drop_share_(drop_share),
-      quantile_(normalQuantile(false_rate / kWindows)),
-      ring_(2 * kLongest + 1),
+      quantile_(normalQuantile(false_rate / kTests)),
+      ring_(kSpan + 1),
       pause_(pause) {}
 
 bool PunctureDetector::step(double force, double travel) {
@@ -30,27 +36,45 @@ bool PunctureDetector::step(double force, double travel) {
   ++count_;
   ring_[static_cast<std::size_t>(count_ - 1) % ring_.size()] = {sums.force_sum + force, sums.travel_sum + travel,
                                                                 travel};
-  for (int window = kShortest; window <= kLongest && 2 * window < count_; window *= 2) {
-    if (!fell(window)) continue;
-    reset();
-    paused_ = pause_;
-    return true;
+  for (int window = kShortest; window <= kLongest; window *= 2) {
+    for (const int lag : kLags) {
+      if ((2 + lag) * window >= count_ || !fell(window, lag * window)) continue;
+      reset();
+      paused_ = pause_;
+      return true;
+    }
   }
   return false;
 }
 
-bool PunctureDetector::fell(int window) const {
-  const Sample &now = before(0), &middle = before(window), &old = before(2 * window);
-  const double advance = now.travel - middle.travel, earlier = middle.travel - old.travel;
-  const double kept = window <= kRough ? 0.5 : 0.9;
-  if (earlier < window * kSmallestAdvance || advance < window * kSmallestAdvance || advance < kept * earlier)
+bool PunctureDetector::fell(int window, int lag) const {
+  const Sample &now = before(0), &middle = before(window), &end = before(window + lag), &old = before(2 * window + lag);
+  const double mean = (now.force_sum - middle.force_sum) / window, earlier = (end.force_sum - old.force_sum) / window;
+  const double fall = earlier - mean;
+  if (fall <= quantile_ * deviation_ * std::sqrt(2.0 / window) || fall <= kSteadyShare * drop_share_ * earlier)
     return false;
+  const double advance = now.travel - middle.travel, advance_before = end.travel - old.travel;
+  if (std::min(advance, advance_before) < window * kSmallestAdvance) return false;
   // A trembling hand may end deeper although it was less deep on average.
-  if (now.travel_sum - middle.travel_sum <= middle.travel_sum - old.travel_sum) return false;
-  const double mean = (now.force_sum - middle.force_sum) / window,
-               mean_before = (middle.force_sum - old.force_sum) / window;
-  const double fall = mean_before - mean;
-  return fall > quantile_ * deviation_ * std::sqrt(2.0 / window) && fall > drop_share_ * mean_before;
+  if (now.travel_sum - middle.travel_sum <= end.travel_sum - old.travel_sum) return false;
+  const double kept = window <= kRough ? 0.5 : kKept;
+  const bool far = lag == 0 && fall > drop_share_ * earlier && advance >= kept * advance_before;
+  return far || isSteady(window, lag);
+}
+
+bool PunctureDetector::isSteady(int window, int lag) const {
+  const int oldest = static_cast<int>(std::min<long>(kSpan, count_ - 1));
+  if (count_ - 1 < kSettled + 2 * window + lag) return false;
+  const auto speed = [&](int end) {  // of the block of a window's length that ends there
+    const int begin = std::min(end + window, oldest);
+    return (before(end).travel - before(begin).travel) / (begin - end);
+  };
+  const double fastest = speed(0) / kKept, slowest = kKept * speed(window + lag);
+  for (int end = window; end < oldest; end += window) {
+    const double each = speed(end);
+    if (each > fastest || (end < window + lag && each < slowest)) return false;
+  }
+  return true;
 }
 
 double PunctureDetector::latency(double force) const {

@@ -201,7 +201,33 @@ TEST_F(DetectorsTest, StopRelaxationAndWithdrawalAreNoPuncture) {
     detector.reset();
     EXPECT_FALSE(findsPuncture(detector, {{20e-9, 300}, {-20e-9, 250}, {20e-9, 250}}, relaxation, noisy))
         << "to and fro";
+    detector.reset();
+    EXPECT_FALSE(findsPuncture(detector, {{200e-9, 60}, {20e-9, 1500}}, relaxation, noisy)) << "fast, then slow";
+    detector.reset();
+    EXPECT_FALSE(findsPuncture(detector, {{20e-9, 300}, {10e-9, 300}, {20e-9, 300}}, relaxation, noisy))
+        << "slower for a while";
   }
+}
+
+/// A force that rises to 1 uN within 6 um, falls by a share within 5 ms, which rubbing of the shaft hides in part, and
+/// rises slowly again.
+TEST_F(DetectorsTest, ASmallFallIsFoundWhereTheNeedleGoesSteadily) {
+  constexpr int kBreaks = 300, kAfter = 150;
+  const auto found = [&](double share, double speed_after) {
+    PunctureDetector detector(noise_, 0.25, 1e-8, 30);
+    double travel = 0;
+    for (int i = 0; i < kBreaks + kAfter; ++i) {
+      const int since = i - kBreaks;
+      travel += since < 0 ? 20e-9 : 20e-9 * speed_after;
+      const double force =
+          since < 0 ? 1e-6 * i / kBreaks : 1e-6 * (1 - share * (1 - std::exp(-since / 5.0))) + 1e-10 * since;
+      if (detector.step(above(force), travel)) return since >= 0;
+    }
+    return false;
+  };
+  for (const double share : {0.15, 0.2, 0.3, 0.6}) EXPECT_TRUE(found(share, 1)) << share;
+  EXPECT_FALSE(found(0.05, 1)) << "a fall that is smaller than what counts";
+  EXPECT_FALSE(found(0.15, 0.7)) << "a needle that slows down";
 }
 
 /// A hand that goes in at 5 to 20 um/s and trembles by 0.12 um rms, a soft and a stiff cell, a force that is 2 ms late.
