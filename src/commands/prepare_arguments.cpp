@@ -38,10 +38,10 @@ Data that are damaged, or of another version, are reported and replaced.
 
 Where the cell has no solution in a part of the range, the range shrinks, which is reported.
 
-Exit status: 0 prepared (or was already); 2 bad usage, a scene that cannot be prepared (friction, adhesion, a viscosity
-that does not relax, a sharp disc on a nonlinear cell, tensegrity: the message names it), or data or output that cannot
-be written (the message names the path and the reason; the folder is checked first); 3 a path ends before a fifth of its
-length: nothing is stored.
+Exit status: 0 prepared (or was already); 2 bad usage, a scene that cannot be prepared (adhesion, a viscosity that
+does not relax, a sharp disc on a nonlinear cell, tensegrity: the message names it), or data or output that cannot be written
+(the message names the path and the reason; the folder is checked first); 3 a path ends before a fifth of its length: nothing
+is stored.
 
 Options)";
 

@@ -142,13 +142,19 @@ bool RigidContact<Dim>::contribution(const Point& point, const Vector& at, Local
   return true;
 }
 
+template <int Dim>
+double RigidContact<Dim>::slipStiffness(const Memory& memory) const {
+  const double bound = config_.friction * memory.traction;
+  return config_.slip_range > 0 ? std::min(config_.penalty, bound / config_.slip_range) : config_.penalty;
+}
+
 /// Elastic up to the bound of Coulomb's law, then of constant force: Huber's function of the slip.
 template <int Dim>
 void RigidContact<Dim>::addFriction(const Point& point, const Vector& at, Local& local) const {
   const Matrix tangential = Matrix::Identity() - point.memory.normal * point.memory.normal.transpose();
   const Vector slip = tangential * (at - point.memory.anchor);
-  const double stiffness = config_.penalty * point.weight,
-               bound = config_.friction * point.memory.traction * point.weight;
+  const double bound = config_.friction * point.memory.traction * point.weight,
+               stiffness = slipStiffness(point.memory) * point.weight;
   const double length = slip.norm();
   if (stiffness * length <= bound) {
     local.energy += 0.5 * stiffness * length * length;
@@ -231,11 +237,12 @@ bool RigidContact<Dim>::settle(Memory& memory, const Vector& at) const {
     return was_touching != memory.touching;
   }
   if (config_.friction == 0) return false;
-  const double stiffness = config_.penalty, bound = config_.friction * memory.traction;
+  const double stiffness = config_.penalty;
   if (was_touching) {
     const Vector slip = (at - memory.anchor) - memory.normal * memory.normal.dot(at - memory.anchor);
-    const double excess = stiffness * slip.norm() / bound;
-    memory.anchor = at - (excess > 1 ? Vector(slip / excess) : slip);
+    const double bound = config_.friction * memory.traction, length = slip.norm();
+    const double elastic = bound > 0 ? bound / slipStiffness(memory) : 0;
+    memory.anchor = at - (length > elastic ? Vector(elastic / length * slip) : slip);
   } else {
     memory.anchor = at;
   }

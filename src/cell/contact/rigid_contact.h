@@ -15,6 +15,7 @@ struct RigidContactConfig {
   enum class Mode { kSticking, kSliding };
   Mode mode = Mode::kSticking;
   double friction = 0;                               ///< Coulomb's coefficient, >= 0, of kSliding
+  double slip_range = 0;                             ///< m, >= 0, elastic slip at which it slides; 0: by the penalty
   double adhesion = 0;                               ///< J/m^2, >= 0, energy of separation per area
   double adhesion_range = 0;                         ///< m, > 0 with adhesion: gap of the largest traction
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< m, of the surface's frame at first contact
@@ -28,7 +29,9 @@ struct RigidContactConfig {
 /// per undeformed area.
 ///
 /// Sliding: energy penalty/2 gap^2 where the gap is negative. Coulomb's friction also has an
-/// incremental potential, bounded by the normal traction of the previous step. Sticking: a point
+/// incremental potential, bounded by the normal traction of the previous step. A point slides once it has
+/// slipped by `slip_range` elastically. With the penalty as its stiffness instead, sticking and sliding
+/// points differ so much that Newton's method ends at a tenth of a cell's diameter. Sticking: a point
 /// sticks to its first contact point until its traction is tensile. Within the step of first
 /// contact it slides; afterwards it is moved back to where its path met the tip.
 ///
@@ -102,6 +105,7 @@ class RigidContact : public EnergyTerm {
   void addFacet(const LayeredBody<Dim>& body, const typename QuadraticMesh<Dim>::Facet& facet);
   Vector relative(const Facet& facet, const Point& point, const Eigen::VectorXd& state) const;
   bool contribution(const Point& point, const Vector& at, Local& local) const;
+  double slipStiffness(const Memory& memory) const;  ///< Pa/m
   void addFriction(const Point& point, const Vector& at, Local& local) const;
   void addAdhesion(const Point& point, const Vector& at, Local& local) const;
   bool settle(Memory& memory, const Vector& at) const;

@@ -23,7 +23,8 @@ namespace {
 /// Contact stiffness, in units of the stiffest layer's modulus over the tip's radius. At a pressure
 /// equal to that modulus the tip then enters the surface by a thousandth of its radius.
 constexpr double kPenalty = 1000;
-constexpr double kDeepest = 0.03;  ///< largest allowed penetration, over the tip's radius or the lip's edge
+constexpr double kSlipRange = 0.01;  ///< elastic slip before sliding, in the size of the surface
+constexpr double kDeepest = 0.03;    ///< largest allowed penetration, over the tip's radius or the lip's edge
 
 /// Young's modulus, Pa, of the stiffest layer, unrelaxed.
 double largestModulus(const Scene& scene) {
@@ -183,6 +184,7 @@ RigidContactConfig contactConfig(const Scene& scene, const Scene::Contact& conta
   RigidContactConfig config;
   config.mode = contact.mode == "sliding" ? RigidContactConfig::Mode::kSliding : RigidContactConfig::Mode::kSticking;
   config.friction = contact.friction;
+  config.slip_range = kSlipRange * size;
   config.adhesion = contact.adhesion_energy;
   config.adhesion_range = contact.adhesion_range;
   config.penalty = kPenalty * largestModulus(scene) / size;

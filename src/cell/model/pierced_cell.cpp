@@ -9,6 +9,7 @@
 namespace microinjection {
 namespace {
 
+constexpr double kSlipRange = 0.01;     ///< in the tip's radius
 constexpr double kStiffContact = 3000;  ///< in Young's moduli over the tip's radius
 
 PiercedSectionConfig sectionOf(const PiercedCellConfig& config) {
@@ -40,6 +41,7 @@ PiercedCell::PiercedCell(const PiercedCellConfig& config)
   RigidContactConfig contact;
   contact.mode = config.sticking ? RigidContactConfig::Mode::kSticking : RigidContactConfig::Mode::kSliding;
   contact.friction = config.friction;
+  contact.slip_range = kSlipRange * config.tip_radius;
   contact.penalty = kStiffContact * config.material.young_modulus / config.tip_radius;
   contact.origin.z() = tip.touchHeight(config.radius, Eigen::Vector2d::Zero());
   contact_ = std::make_shared<RigidContact<2>>(*body_, std::make_shared<RoundedTip>(tip), contact);

@@ -119,12 +119,6 @@ void SurrogatePlan::check(const Scene& scene) {
     throw ConfigError("viscoelasticity of layer " + layer.name +
                       ": must be that of the other layers: a surrogate cell relaxes as a whole");
   }
-  if (scene.needle.contact.friction > 0) {
-    std::ostringstream message;
-    message << "needle/contact/friction = " << scene.needle.contact.friction
-            << ": must be 0, or the mode sticking: friction dissipates energy, which a surrogate cell cannot";
-    throw ConfigError(message.str());
-  }
   if (scene.needle.contact.adhesion_energy > 0) {
     throw ConfigError("needle/contact/adhesion: must be left out: a surrogate cell has no contact history");
   }

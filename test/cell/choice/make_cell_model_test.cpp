@@ -164,9 +164,11 @@ TEST_F(ServeNeedle, AnUnpreparedDiscIsLiveOnLinearTetrahedra) {
 
 TEST_F(ServeNeedle, PreparedRefusesWhatIsNot) {
   EXPECT_TRUE(has(refusal(pipette(), "surrogate"), "not prepared; run: rosrun")) << refusal(pipette(), "surrogate");
-  Scene rubbing = pipette();
-  rubbing.needle.contact = {"sliding", 0.2};
-  EXPECT_TRUE(has(refusal(rubbing, "surrogate"), "friction = 0.2")) << refusal(rubbing, "surrogate");
+  Scene sticky = pipette();
+  sticky.needle.contact.adhesion_energy = 1e-3;
+  sticky.needle.contact.adhesion_range = 0.1e-6;
+  EXPECT_TRUE(has(refusal(sticky, "surrogate"), "needle/contact/adhesion: must be left out"))
+      << refusal(sticky, "surrogate");
 }
 
 /// An operator who reads "not prepared" would not look for a disk that fails.
@@ -232,14 +234,19 @@ TEST_F(ServeNeedle, ATensegrityIsServedLiveWithoutAWarning) {
 TEST_F(ServeNeedle, WhatCannotBePreparedIsLive) {
   Scene viscous = pipette();
   viscous.cell.material().viscoelasticity.viscosity = 20;
+  const ChosenCellModel served = makeCellModel(viscous, "auto", {}, "a.yaml");
+  EXPECT_FALSE(served.as_required);
+  EXPECT_TRUE(has(served.description, "cannot be prepared (")) << served.description;
+  EXPECT_TRUE(has(served.description, "so it is live: P2-P0")) << served.description;
+}
+
+TEST_F(ServeNeedle, FrictionIsLiveUntilItIsPrepared) {
   Scene rubbing = pipette();
   rubbing.needle.contact = {"sliding", 0.2};
-  for (const Scene& scene : {viscous, rubbing}) {
-    const ChosenCellModel served = makeCellModel(scene, "auto", {}, "a.yaml");
-    EXPECT_FALSE(served.as_required);
-    EXPECT_TRUE(has(served.description, "cannot be prepared (")) << served.description;
-    EXPECT_TRUE(has(served.description, "so it is live: P2-P0")) << served.description;
-  }
+  const ChosenCellModel served = makeCellModel(rubbing, "auto", {}, "a.yaml");
+  EXPECT_FALSE(served.as_required);
+  EXPECT_TRUE(has(served.description, "not prepared; run: rosrun")) << served.description;
+  EXPECT_TRUE(has(served.description, "so it is live: P2-P0")) << served.description;
 }
 
 TEST_F(ServeNeedle, ExplicitDynamicsIsServedWithAWarningWhereItIsAskedForByName) {

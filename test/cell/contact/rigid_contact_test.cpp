@@ -108,6 +108,8 @@ TEST(RigidContact, DerivativesInTheSection) {
   expectDerivativesOf<2>(sliding);
   sliding.friction = 0.3;
   expectDerivativesOf<2>(sliding);
+  sliding.slip_range = 0.03e-6;
+  expectDerivativesOf<2>(sliding);
 }
 
 TEST(RigidContact, DerivativesInSpace) { expectDerivativesOf<3>({}); }
@@ -173,6 +175,43 @@ TEST(RigidContact, AdhesionDoesTheWorkThatItIsGiven) {
   EXPECT_NEAR(work, 2e-3 * touched, 0.05 * 2e-3 * touched);
   const double most = 2e-3 / (std::exp(1.0) * 0.5e-6) * touched;
   EXPECT_NEAR(pull(-0.5e-6), most, 0.07 * most);
+}
+
+/// A tip that is pressed onto a rigid surface and turned along it resists like a spring until it has slipped by the
+/// range, and with Coulomb's share of the normal force from then on; back, it springs back first.
+TEST(RigidContact, FrictionIsElasticWithinItsRange) {
+  constexpr double kShare = 0.3, kRange = 0.05e-6;
+  RigidContactConfig config;
+  config.mode = RigidContactConfig::Mode::kSliding;
+  config.friction = kShare;
+  config.slip_range = kRange;
+  Fixture<3> fixture(config);
+  const auto at = [&](double aside) {  // the whole surface moves aside under the tip
+    Eigen::VectorXd state = Eigen::VectorXd::Zero(fixture.body.stateSize());
+    state[fixture.body.tipEntry()] = aside;
+    state[fixture.body.tipEntry() + 2] = -0.05e-6;
+    return state;
+  };
+  const auto forceOn = [&](const Eigen::VectorXd& state) {  // N, (x, z) on the tip
+    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+    for (int facet = 0; facet < fixture.contact->elementCount(); ++facet) {
+      LocalEnergy local;
+      fixture.contact->evaluate(facet, state, Order::kGradient, local);
+      if (!local.zero) sum -= Eigen::Vector2d(local.gradient[local.gradient.size() - 3], local.gradient.tail<1>()[0]);
+    }
+    return sum;
+  };
+  fixture.endStep(at(0));
+  fixture.endStep(at(0));
+  const double normal = forceOn(at(0)).y();
+  ASSERT_GT(normal, 0);
+  const double bound = kShare * normal, about = 0.1 * bound;  // the points that touch see the tip's round end
+  EXPECT_NEAR(forceOn(at(0.5 * kRange)).x(), -0.5 * bound, about);
+  EXPECT_NEAR(forceOn(at(kRange)).x(), -bound, about);
+  EXPECT_NEAR(forceOn(at(2 * kRange)).x(), -bound, about);
+  fixture.endStep(at(2 * kRange));
+  EXPECT_NEAR(forceOn(at(2 * kRange)).x(), -kShare * forceOn(at(2 * kRange)).y(), about);
+  EXPECT_NEAR(forceOn(at(kRange)).x(), 0, about);
 }
 
 TEST(RigidContact, TheNeedleCanLoseIt) {

@@ -117,6 +117,24 @@ TEST(ConvergedForce, MuchFrictionSticks) {
   EXPECT_NEAR(push(rough, {5e-6}, 0.02)[0].force.z() / stuck, 1, 0.01);
 }
 
+/// To a quarter of the diameter, where a smooth tip has no solution any more; GetFEM's force is not known there.
+TEST(ConvergedForce, FrictionLiesBetweenSlidingAndSticking) {
+  const std::vector<double> depths = {5e-6, 14e-6};
+  const double stuck = push(pipetteScene("sticking"), depths, 0.02)[1].force.z();
+  double last = push(pipetteScene("sliding"), {5e-6}, 0.02)[0].force.z(), last_deep = 0.7 * stuck;
+  for (const double friction : {0.1, 0.2, 0.5, 2.0}) {
+    Scene rubbed = pipetteScene("sliding");
+    rubbed.needle.contact.friction = friction;
+    const auto points = push(rubbed, depths, 0.02);
+    EXPECT_TRUE(points[1].converged) << friction << ": " << points[1].reason;
+    EXPECT_GT(points[0].force.z(), last) << friction;
+    EXPECT_GT(points[1].force.z(), last_deep) << friction;
+    last = points[0].force.z();
+    last_deep = points[1].force.z();
+  }
+  EXPECT_NEAR(last_deep / stuck, 1, 0.005);
+}
+
 TEST(ConvergedForce, ScalesWithModulusAndSize) {
   Scene small = scene("neo_hookean");
   const double force = push(small, {2e-6})[0].force.z();
