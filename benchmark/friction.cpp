@@ -1,16 +1,22 @@
 // How far a contact with friction or adhesion is solved, the force it has, and what the way in and out loses: the mouse
 // oocyte under a hemisphere.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <random>
 #include <string>
 #include <vector>
 
+#include "base/cpu_time.h"
 #include "benchmark/bench_main.h"
 #include "benchmark/common/printed_table.h"
+#include "cell/choice/make_cell_model.h"
+#include "cell/family/section_family.h"
 #include "cell/mechanics/symmetric_solver.h"
 #include "cell/model/cell_problem.h"
 #include "cell/model/scene_mesh.h"
+#include "cell/surrogate/surrogate_cell_model.h"
 
 namespace microinjection {
 namespace {
@@ -81,9 +87,8 @@ void add(PrintedTable& table, const Rubbed& of, double level, double deepest) {
   table.add(row);
 }
 
-std::string table(const std::string& meshes) {
+void solveAll(PrintedTable& table, const std::string& meshes) {
   SymmetricSolver::useOneThread();
-  PrintedTable table;
   table.add("mesh,friction,adhesion_J_per_m2,level,deepest_um,force_at_14_um_uN,lost_percent,pull_nN,time_s\n");
   for (const Rubbed& of : {Rubbed{0, 0},
                            {0.01, 0},
@@ -103,7 +108,46 @@ std::string table(const std::string& meshes) {
   for (const Rubbed& of : {Rubbed{0.1, 0}, {0.5, 0}, {0.1, 1e-3}}) {
     if (meshes.find("space") != std::string::npos) add<3>(table, of, -1, kQuarter);
   }
-  return table.text();
+}
+
+/// Cells of the shipped families that nobody has solved, served, against their own solutions to a quarter of the
+/// diameter.
+void family(PrintedTable& table, int members) {
+  const std::string families = MICROINJECTION_SOURCE_DIR "/config/families";
+  const SectionFamily shipped = SectionFamily::load(families + "/friction/homogeneous.yaml");
+  std::mt19937 random(1);
+  std::vector<double> errors, times;
+  for (int i = 0; i < members; ++i) {
+    Eigen::VectorXd at(shipped.dimension());
+    for (double& x : at) x = 2 * (random() / 4294967296.0) - 1;
+    const Scene scene = shipped.member(at);
+    const ServingPlan plan = planServing(scene, "surrogate", families, "");
+    SurrogateCellModel served(scene, plan.source.data);
+    CellProblem<2> problem(scene, makeSceneMesh<2>(scene, 1), ElementKind::kP2P0);
+    double time = 0;
+    served.step({0, 0, 1 + 1e-3}, Eigen::Vector3d::UnitZ(), time += 1e-3);
+    for (int i = 1; i <= 25; ++i) {
+      const double depth = 0.02 * i;
+      const IndentationSolution solved = problem.solve({0, 0, -depth});
+      if (!solved.converged) break;
+      const TipForce force = served.step({0, 0, 1 - depth}, Eigen::Vector3d::UnitZ(), time += 1e-3);
+      if (force.valid && depth > 0.05) errors.push_back(std::abs(force.force.z() / solved.force.z() - 1));
+    }
+    constexpr int kTimed = 10000;
+    const double begin = threadCpuTime();
+    for (int k = 0; k < kTimed; ++k)
+      served.step({0, 0, 0.5 + 0.48 * k / kTimed}, Eigen::Vector3d::UnitZ(), time += 1e-3);
+    times.push_back((threadCpuTime() - begin) / kTimed);
+  }
+  std::sort(errors.begin(), errors.end());
+  std::sort(times.begin(), times.end());
+  char row[200];
+  std::snprintf(row, sizeof row,
+                "family of %d members: force error median %.3g %%, nine of ten %.3g %%, worst %.3g %%; %zu forces; "
+                "%.3g us a step\n",
+                members, 100 * errors[errors.size() / 2], 100 * errors[errors.size() * 9 / 10], 100 * errors.back(),
+                errors.size(), 1e6 * times[times.size() / 2]);
+  table.add(row);
 }
 
 }  // namespace
@@ -112,9 +156,19 @@ std::string table(const std::string& meshes) {
 int main(int argc, char** argv) {
   using namespace microinjection;
   namespace po = boost::program_options;
-  std::string meshes = "section,space";
+  std::string meshes = "section,space,family";
+  int members = 30;
   po::options_description more;
-  more.add_options()("meshes", po::value(&meshes)->default_value(meshes), "section, space");
+  more.add_options()("meshes", po::value(&meshes)->default_value(meshes),
+                     "section, space; family: members at random, served");
+  more.add_options()("members", po::value(&members)->default_value(members), "of the family");
   return benchMain(
-      argc, argv, "friction: forces of a cell under a tip that rubs or adheres", [&] { return table(meshes); }, more);
+      argc, argv, "friction: forces of a cell under a tip that rubs or adheres",
+      [&] {
+        PrintedTable rows;
+        solveAll(rows, meshes);
+        if (meshes.find("family") != std::string::npos) family(rows, members);
+        return rows.text();
+      },
+      more);
 }

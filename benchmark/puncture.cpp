@@ -3,17 +3,22 @@
 
 #include <boost/math/special_functions/fpclassify.hpp>
 
+#include <algorithm>
 #include <boost/math/quadrature/tanh_sinh.hpp>
 #include <boost/math/tools/minima.hpp>
 #include <boost/math/tools/roots.hpp>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <random>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
+#include "base/errors.h"
 #include "benchmark/bench_main.h"
 #include "benchmark/common/printed_table.h"
+#include "cell/family/pierced_family.h"
 #include "cell/model/pierced_cell.h"
 #include "cell/model/piezo_stroke.h"
 #include "cell/model/solved_branch.h"
@@ -152,6 +157,61 @@ void branches(PrintedTable& table, double level) {
   }
 }
 
+/// Median, what one of ten exceeds, and the worst of relative errors, in percent.
+std::string quantiles(std::vector<double> errors) {
+  std::sort(errors.begin(), errors.end());
+  char text[100];
+  std::snprintf(text, sizeof text, "%.3g,%.3g,%.3g", 100 * errors[errors.size() / 2],
+                100 * errors[errors.size() * 9 / 10], 100 * errors.back());
+  return text;
+}
+
+/// Members of the shipped family that nobody has solved, against their own solutions.
+void family(PrintedTable& table, int members) {
+  const std::string folder = MICROINJECTION_SOURCE_DIR "/config/families/pierced/";
+  const PiercedFamily shipped(SectionFamilyData::loadBoth(folder + "homogeneous.yaml"));
+  const SectionFamily& of = shipped.data().family();
+  std::mt19937 random(1);
+  std::vector<double> whole, pierced, depths, forces, times;
+  for (int i = 0; i < members; ++i) {
+    Eigen::VectorXd at(of.dimension());
+    for (double& x : at) x = 2 * (random() / 4294967296.0) - 1;
+    const Scene scene = of.member(at);
+    const PiercedBranch solved = solvePiercedBranch(scene);
+    const FamilyBranch found = shipped.branch(scene);
+    const PiercedBranch& own = found.branch;
+    if (!solved.onset() || !own.onset()) throw std::runtime_error("a member is not pierced");
+    const PiercedBranch::Onset onset = *solved.onset();
+    const double tip = scene.needle.tip.radius;
+    for (double depth = tip / 2; depth < onset.depth; depth += tip / 4)
+      whole.push_back(std::abs(own.whole(depth).force / solved.whole(depth).force - 1));
+    double ours = own.onset()->length, theirs = onset.length;
+    const double begin = now();
+    int steps = 0;
+    for (double depth = onset.depth; depth < onset.depth + 4 * tip; depth += tip / 100, ++steps)
+      own.at(depth, ours = own.grown(depth, ours));
+    times.push_back((now() - begin) / steps);
+    ours = own.onset()->length;
+    for (double depth = onset.depth + tip / 4; depth < onset.depth + 4 * tip; depth += tip / 4) {
+      const double force = own.at(depth, ours = own.grown(depth, ours)).force;
+      pierced.push_back(std::abs(force / solved.at(depth, theirs = solved.grown(depth, theirs)).force - 1));
+    }
+    depths.push_back(std::abs(own.onset()->depth / onset.depth - 1));
+    forces.push_back(std::abs(own.onset()->force / onset.force - 1));
+    std::fprintf(stderr, "puncture: member %d of %d\n", i + 1, members);
+  }
+  std::sort(times.begin(), times.end());
+  table.add("study,of,members,median_percent,nine_of_ten_percent,worst_percent\n");
+  const std::string count = std::to_string(members) + ",";
+  table.add("family,force of the whole cell," + count + quantiles(whole) + "\n");
+  table.add("family,force of the pierced cell," + count + quantiles(pierced) + "\n");
+  table.add("family,depth of the onset," + count + quantiles(depths) + "\n");
+  table.add("family,force of the onset," + count + quantiles(forces) + "\n");
+  char row[100];
+  std::snprintf(row, sizeof row, "family,microseconds a step,%d,%.3g,,\n", members, 1e6 * times[times.size() / 2]);
+  table.add(row);
+}
+
 /// The dent in which cell A, with a shear modulus of an oocyte, breaks under the pulses of a piezo.
 void piezo(PrintedTable& table, double level) {
   table.add("study,viscosity,amplitude,rise_time,pulse_force,dent,dent_without\n");
@@ -211,13 +271,19 @@ void paper(PrintedTable& table, double level) {
       const double share = (low + high) / 2;
       scene.cell.puncture.layers.front().toughness = kTip * deep.toughnessFor(share * kForce / (kTip * kTip));
       const SteadyPenetration steady = steadyPenetration(scene);
-      const PiercedBranch branch = solvePiercedBranch(scene, level);
-      const auto onset = branch.onset();
+      std::optional<PiercedBranch::Onset> onset;
       double after = NAN;
-      if (onset) {
-        double length = onset->length, depth = onset->depth;
-        for (int k = 0; k < 20; ++k) length = branch.grown(depth += 0.25e-6, length);
-        after = branch.at(depth, length).force;
+      try {
+        const PiercedBranch branch = solvePiercedBranch(scene, level);
+        onset = branch.onset();
+        if (onset) {
+          double length = onset->length, depth = onset->depth;
+          for (int k = 0; k < 20; ++k) length = branch.grown(depth += 0.25e-6, length);
+          after = branch.at(depth, length).force;
+        }
+      } catch (const ConfigError& error) {
+        std::fprintf(stderr, "puncture: exponent %g, hole of %.3g um: %s\n", exponent, 1e6 * steady.hole_radius * kTip,
+                     error.what());
       }
       char row[300];
       std::snprintf(row, sizeof row, "paper,%g,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g\n", exponent,
@@ -238,10 +304,12 @@ int main(int argc, char** argv) {
   using namespace microinjection;
   std::string studies = "steady,branches,piezo";
   double level = 0;
+  int members = 30;
   namespace po = boost::program_options;
   po::options_description more;
-  more.add_options()("studies", po::value(&studies)->default_value(studies), "steady, branches, piezo, paper");
+  more.add_options()("studies", po::value(&studies)->default_value(studies), "steady, branches, piezo, paper, family");
   more.add_options()("level", po::value(&level)->default_value(level), "of the meshes: each halves the elements");
+  more.add_options()("members", po::value(&members)->default_value(members), "of the study family");
   return benchMain(
       argc, argv, "puncture: energy balance of a long hole, onset of the puncture and the force behind it",
       [&] {
@@ -251,6 +319,7 @@ int main(int argc, char** argv) {
         if (asked("branches")) branches(table, level);
         if (asked("piezo")) piezo(table, level);
         if (asked("paper")) paper(table, level);
+        if (asked("family")) family(table, members);
         return table.text();
       },
       more);

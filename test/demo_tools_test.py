@@ -68,6 +68,8 @@ class PaceRecordTest(unittest.TestCase):
         pace = session_monitor.PaceRecord()
         pace.add(self.array(a=1))
         pace.begin()
+        pace.add(self.array(b=0))
+        self.assertEqual((pace.reports(), pace.slow()), (0, []), 'one that was there is silent')
         pace.add(self.array(a=0))
         self.assertEqual((pace.reports(), pace.slow()), (1, []))
 

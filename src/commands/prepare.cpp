@@ -12,9 +12,11 @@
 #include "base/errors.h"
 #include "base/standard_output.h"
 #include "base/worker_processes.h"
+#include "cell/choice/make_cell_model.h"
 #include "cell/choice/model_choice.h"
 #include "cell/family/family_cell.h"
-#include "cell/family/mouth_family.h"
+#include "cell/family/pierced_family.h"
+#include "cell/family/section_family.h"
 #include "cell/model/scene.h"
 #include "cell/model/similarity.h"
 #include "cell/model/solved_branch.h"
@@ -23,7 +25,7 @@
 #include "commands/path_store.h"
 #include "commands/prepare_arguments.h"
 #include "commands/prepare_family.h"
-#include "commands/prepare_mouth_family.h"
+#include "commands/prepare_section_family.h"
 #include "commands/run_tasks.h"
 
 namespace microinjection {
@@ -160,7 +162,7 @@ int work(const PrepareArguments& arguments) {
     }
     if (arguments.member >= 0) return solveCheckPath(arguments.family, arguments.member, arguments.ray);
     if (arguments.ray >= 0) return solveFamilyPath(arguments.family.file, arguments.at, arguments.ray);
-    solveMouthMember(arguments.family.file, arguments.at);
+    solveSectionMember(arguments.family.file, arguments.at);
     return kDone;
   } catch (const std::exception&) {
     std::fputc('\n', stderr);  // ends the progress line of the preparation
@@ -169,9 +171,10 @@ int work(const PrepareArguments& arguments) {
 }
 
 /// What a scene's puncture needs, where it follows from a toughness.
-void preparePuncture(const std::string& path) {
+void preparePuncture(const std::string& path, const std::string& families) {
   const Scene scene = loadScene(path).glued();
-  if (!piercedByMechanics(scene)) return;
+  std::string reason;
+  if (!piercedByMechanics(scene) || findFamilyBranch(families, scene, reason)) return;
   const PiercedBranch branch = storedPiercedBranch(scene, [](int solved, int count) {
     std::fprintf(stderr, "prepare: the cell with holes under the needle: path %d of %d\n", solved + 1, count);
   });
@@ -184,21 +187,22 @@ bool isServed(const PrepareArguments& arguments) {
   const Scene scene = loadScene(arguments.scene).glued();
   std::string reason;
   const auto member = findFamilyCell(arguments.families, scene, reason);
-  if (!member || member->data->common_error > scene.requirements.force_error) {
-    std::printf("prepare: no family serves the scene as exactly as it asks for: %s\n",
-                member ? member->description.c_str() : reason.c_str());
-    return false;
-  }
-  std::printf("prepare: served without preparation: %s\n", member->description.c_str());
-  return true;
+  SurrogateSource source;
+  if (member) source.data = member->data, source.text = member->description;
+  if (auto rubbed = member ? std::nullopt : findRubbedCell(scene, arguments.families, reason)) source = *rubbed;
+  const bool exact = source.data && source.data->common_error <= scene.requirements.force_error;
+  std::printf(exact ? "prepare: served without preparation: %s\n"
+                    : "prepare: no family serves the scene as exactly as it asks for: %s\n",
+              source.data ? source.text.c_str() : reason.c_str());
+  return exact;
 }
 
 int prepare(const PrepareArguments& arguments) {
   if (arguments.family.file.empty()) {
-    preparePuncture(arguments.scene);
+    preparePuncture(arguments.scene, arguments.families);
     return isServed(arguments) ? kDone : Preparing(arguments).run();
   }
-  if (MouthFamily::kindOf(arguments.family.file)) return prepareMouthFamily(arguments.family), kDone;
+  if (SectionFamily::kindOf(arguments.family.file)) return prepareSectionFamily(arguments.family), kDone;
   arguments.family.check > 0 ? checkFamily(arguments.family) : prepareFamily(arguments.family);
   return kDone;
 }

@@ -30,8 +30,8 @@ whose puncture has a toughness is solved with holes first, in a minute.
 With --family it solves members of a family of cells, each in minutes, and stores the family's data beside its file (NAME.data
 beside NAME.yaml). Every cell inside of the family is then served at once, without a preparation. The members are where
 the prediction from the solved ones is least certain. Several processes with one cache share the work. With --list, --task
-and --gather a job scheduler does it, round by round: see doc/guide/cluster.md. Families of cells in a pipette's mouth
-(config/families/tongues and held) are solved in the same way, in seconds a member, with --members and --jobs only. A task
+and --gather a job scheduler does it, round by round: see doc/guide/cluster.md. Families of sections
+(config/families/tongues, held, friction, pierced) are solved in the same way, in seconds a member, with --members and --jobs only. A task
 that another process solves at the moment ends with status 4: try it again.
 
 Data that are damaged, or of another version, are reported and replaced.

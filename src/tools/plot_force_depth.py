@@ -118,7 +118,7 @@ def plot_force(axes, table, marks):
     if marks:
         axes.set_ylim(top=1.4 * top)
     if touched.any():
-        axes.legend(loc='lower left', bbox_to_anchor=(0, 0.99), ncol=4, frameon=False, fontsize=8)
+        axes.legend(loc='center', bbox_to_anchor=(0.55, 0.35), frameon=False, fontsize=8)
 
 
 def plot_hand(axes, table):

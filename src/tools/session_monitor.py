@@ -10,7 +10,8 @@ class PaceRecord:
         self._slow = {}  # by node: whether it was too slow, since begin()
 
     def begin(self):
-        self._slow = {}
+        """Forgets the reports, but not who has reported."""
+        self._slow = {node: [] for node in self._slow}
 
     def add(self, message):
         """@param message  diagnostic_msgs/DiagnosticArray"""
@@ -21,11 +22,11 @@ class PaceRecord:
 
     def reports(self):
         """Returns the least number of reports of any node; 0 before the first."""
-        return min(map(len, self._slow.values()), default=0)
+        return min(map(len, list(self._slow.values())), default=0)
 
     def slow(self):
         """Returns the nodes that were too slow in most of their reports."""
-        return sorted(node for node, slow in self._slow.items() if 2 * sum(slow) > len(slow))
+        return sorted(node for node, slow in list(self._slow.items()) if 2 * sum(slow) > len(slow))
 
 
 class SessionMonitor:

@@ -15,6 +15,8 @@ import numpy
 import cell_microinjection as cm
 from cell_microinjection import _core, gym
 
+CACHE = tempfile.TemporaryDirectory()  # what this user has prepared serves no test
+os.environ['XDG_CACHE_HOME'] = CACHE.name
 CELLS = Path(__file__).resolve().parents[2] / 'config/cells'
 SCENE = cm.Scene.load(CELLS / 'mouse_oocyte_injection.yaml')
 

@@ -1,5 +1,6 @@
 #include "cell/choice/make_cell_model.h"
 
+#include <cmath>
 #include <map>
 #include <optional>
 #include <sstream>
@@ -8,8 +9,9 @@
 
 #include "base/errors.h"
 #include "cell/choice/model_choice.h"
+#include "cell/family/axis_force_ratio.h"
 #include "cell/family/family_cell.h"
-#include "cell/family/held_force_family.h"
+#include "cell/family/pierced_family.h"
 #include "cell/family/tongue_family.h"
 #include "cell/model/bore_tongue.h"
 #include "cell/model/live_cell.h"
@@ -34,7 +36,36 @@ std::string missingReason(const CacheRead<SurrogateData>& read, const std::strin
   return reason + call;
 }
 
-/// The scene's own data or those of a family, whichever are more exact.
+}  // namespace
+
+std::optional<SurrogateSource> findRubbedCell(const Scene& scene, const std::string& families, std::string& outside) {
+  if (!(scene.needle.contact.friction > 0)) return std::nullopt;
+  const std::optional<AxisForceRatio> ratio = findFrictionForce(families, scene, outside);
+  const std::optional<FamilyCell> member = ratio ? findFamilyCell(families, stuck(scene), outside) : std::nullopt;
+  if (!member) return std::nullopt;
+  if (!scene.needle.offset.isZero(0)) {
+    outside = "the families know friction on the axis only";
+    return std::nullopt;
+  }
+  auto data = std::make_shared<SurrogateData>(*member->data);
+  ratio->applyTo(*data, scene.radius());
+  data->common_error = std::hypot(data->common_error, ratio->error());
+  data->median_error = std::hypot(data->median_error, ratio->error() / 2);
+  std::ostringstream text;
+  text.precision(2);
+  text << member->description << "; corrected by up to " << 100 * ratio->largestChange()
+       << " % for a tip that rubs, with an error of " << 100 * ratio->error()
+       << " % on the axis; beside it the error is not known";
+  SurrogateSource source;
+  source.data = std::move(data);
+  source.text = text.str();
+  return source;
+}
+
+namespace {
+
+/// The scene's own data or those of a family, whichever are more exact; of a needle that rubs its own ones, if it has
+/// any.
 SurrogateSource findSurrogate(const Scene& scene, const std::string& families, const std::string& call) {
   const SurrogateRange range = SurrogateRange::standard(scene);
   auto own = SurrogateData::load(scene, range, surrogateFile(scene, SurrogatePlan::plan(scene, range)));
@@ -49,6 +80,9 @@ SurrogateSource findSurrogate(const Scene& scene, const std::string& families, c
     source.data = member->data;
     source.text =
         member->description + (own || own.state == CacheState::kMissing ? "" : "; " + missingReason(own, call));
+  } else if (auto rubbed = findRubbedCell(scene, families, outside)) {
+    source = std::move(*rubbed);
+    if (own.state != CacheState::kMissing) source.text += "; " + missingReason(own, call);
   } else {
     source.text = missingReason(own, call) + (outside.empty() ? "" : "; " + outside);
   }
@@ -112,7 +146,7 @@ std::optional<BoreTongue> tongueOf(const Scene& scene, const std::string& famili
 /// held forces has the cell.
 void tellOfSuction(const Scene& wanted, const std::string& families, ServingPlan& plan) {
   std::string refusal;
-  const std::optional<HeldForce> held = findHeldForce(families, wanted, refusal);
+  const std::optional<AxisForceRatio> held = findHeldForce(families, wanted, refusal);
   std::ostringstream note;
   note << "; suction holds the cell, which is served as glued to a ring of "
        << 1e6 * plan.scene->holding_pipette.contact_radius << " um: ";
@@ -132,6 +166,26 @@ void tellOfSuction(const Scene& wanted, const std::string& families, ServingPlan
   }
   plan.as_required = plan.as_required && plan.glued_error <= wanted.requirements.force_error;
   plan.reason += note.str();
+}
+
+/// What the scene's needle does to its outermost layer, by the family that has it; else it is solved.
+PiercedBranch branchFor(const Scene& scene, const CellModelConfig& config, std::string& description) {
+  std::string refusal;
+  if (std::optional<FamilyBranch> found = findFamilyBranch(config.families, scene, refusal)) {
+    std::ostringstream text;
+    text.precision(2);
+    text << "; its branches are those of a family, with errors below " << 100 * found->whole_error << " % before and "
+         << 100 * found->pierced_error << " % to 4 tip radii behind the onset in nine of ten; ";
+    description += text.str() + describePuncture(found->branch, scene);
+    return std::move(found->branch);
+  }
+  PiercedBranch solved = storedPiercedBranch(scene, [&](int path, int count) {
+    if (config.tell)
+      config.tell("solves the cell with holes under the needle, once for this cell and tip: path " +
+                  std::to_string(path + 1) + " of " + std::to_string(count));
+  });
+  description += "; " + describePuncture(solved, scene);
+  return solved;
 }
 
 }  // namespace
@@ -168,6 +222,7 @@ ChosenCellModel makeCellModel(const Scene& wanted, const std::string& model, con
     tracker = std::move(explicit_model);
   } else if (plan.served == Served::kSurrogate) {
     auto surrogate = std::make_unique<SurrogateCellModel>(scene, plan.source.data);
+    if (scene.needle.contact.friction > 0) chosen.unchangeable = "its friction is that of this one only";
     if (plan.source.family)
       chosen.change = std::make_unique<MemberChange>(wanted, plan.source.family, *surrogate, plan.held_family);
     tracker = std::move(surrogate);
@@ -185,14 +240,9 @@ ChosenCellModel makeCellModel(const Scene& wanted, const std::string& model, con
   }
   std::optional<PiercedBranch> branch;
   if (piercedByMechanics(scene)) {
-    branch = storedPiercedBranch(scene, [&](int path, int count) {
-      if (config.tell)
-        config.tell("solves the cell with holes under the needle, once for this cell and tip: path " +
-                    std::to_string(path + 1) + " of " + std::to_string(count));
-    });
+    branch = branchFor(scene, config, chosen.description);
     chosen.change.reset();
-    chosen.unchangeable = "its hole under the needle is solved for this one only";
-    chosen.description += "; " + describePuncture(*branch, scene);
+    chosen.unchangeable = "its hole under the needle is that of this one only";
   }
   chosen.cell =
       std::make_unique<PuncturableCell>(scene, std::move(tracker), tongueOf(scene, config.families), std::move(branch));

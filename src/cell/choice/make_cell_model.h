@@ -27,6 +27,10 @@ struct SurrogateSource {
   std::shared_ptr<const FamilyData> family;   ///< that contains the scene; null: none
 };
 
+/// Of a needle on the axis that rubs: the data of one that sticks, corrected by the family of friction forces. Nothing:
+/// no family has it, for the reason that `outside` then gives the user.
+std::optional<SurrogateSource> findRubbedCell(const Scene& scene, const std::string& families, std::string& outside);
+
 enum class Served { kExplicit, kLive, kSurrogate };
 
 /// What will serve a scene.
@@ -39,7 +43,8 @@ struct ServingPlan {
   /// What is served in place of the scene: one that suction holds is glued, see Scene::glued().
   std::shared_ptr<const Scene> scene{};
   double glued_error = 0;  ///< relative, of the force on the axis, that this adds; 0: the scene is itself
-  /// Folder of the families by whose held forces the surrogate data are corrected, see HeldForce; empty: they are not.
+  /// Folder of the families by whose held forces the surrogate data are corrected, see AxisForceRatio; empty: they are
+  /// not.
   std::string held_family{};
 };
 

@@ -1,7 +1,7 @@
 #include "cell/choice/member_change.h"
 
 #include "base/errors.h"
-#include "cell/family/held_force_family.h"
+#include "cell/family/axis_force_ratio.h"
 
 namespace microinjection {
 
@@ -13,7 +13,7 @@ std::string MemberChange::change(const std::vector<CellParameter>& parameters) {
   if (!member) throw ConfigError(reason.empty() ? "the cell is of another form than its family" : reason);
   std::shared_ptr<const SurrogateData> data = member->data;
   if (!held_family_.empty()) {
-    const std::optional<HeldForce> held = findHeldForce(held_family_, next, reason);
+    const std::optional<AxisForceRatio> held = findHeldForce(held_family_, next, reason);
     if (!held) throw ConfigError("suction holds the cell: " + reason);
     auto corrected = std::make_shared<SurrogateData>(*data);
     held->applyTo(*corrected, next.radius());

@@ -61,4 +61,32 @@ const std::vector<Ratio>& mouthRatios() {
   return all;
 }
 
+namespace {
+
+/// J/m^2 for a toughness of 1: shear modulus times tip's radius.
+double toughnessUnit(const Scene& scene) {
+  return scene.cell.material().young_modulus / (2 + 2 * scene.cell.material().poisson_ratio) * scene.needle.tip.radius;
+}
+
+}  // namespace
+
+const std::vector<Ratio>& needleRatios() {
+  static const std::vector<Ratio> all = [] {
+    std::vector<Ratio> result;
+    for (const Ratio& ratio : ratios()) {
+      if (ratio.layers == 1 && ratio.name != std::string("surface_tension")) result.push_back(ratio);
+    }
+    result.push_back({"friction", true, 1, [](const Scene& scene) { return scene.needle.contact.friction; },
+                      [](Scene& scene, double value) { scene.needle.contact.friction = rounded(value); }});
+    result.push_back(
+        {"toughness", true, 1,
+         [](const Scene& scene) { return scene.cell.puncture.layers.front().toughness / toughnessUnit(scene); },
+         [](Scene& scene, double value) {
+           scene.cell.puncture.layers.front().toughness = rounded(value * toughnessUnit(scene));
+         }});
+    return result;
+  }();
+  return all;
+}
+
 }  // namespace microinjection

@@ -9,23 +9,23 @@
 
 namespace microinjection {
 
-TongueFamily::TongueFamily(MouthFamilyData data) : data_(std::move(data)) {
-  if (data_.family().kind() != MouthFamily::Kind::kTongue)
+TongueFamily::TongueFamily(SectionFamilyData data) : data_(std::move(data)) {
+  if (data_.family().kind() != SectionFamily::Kind::kTongue)
     throw std::invalid_argument("family " + data_.family().name() + " has no tongues");
-  for (const MouthMember& member : data_.members()) {
+  for (const SectionMember& member : data_.members()) {
     if (member.curves.rows() != TongueCurves::kNodes || member.curves.cols() != TongueCurves::kColumns)
       throw ConfigError("family " + data_.family().name() + ": its data have other curves than tongues");
   }
 }
 
 TongueFamily TongueFamily::load(const std::string& family_file) {
-  if (MouthFamily::kindOf(family_file) != MouthFamily::Kind::kTongue)
+  if (SectionFamily::kindOf(family_file) != SectionFamily::Kind::kTongue)
     throw ConfigError(family_file + ": is no family of tongues: its key `tongue` is missing");
-  return TongueFamily(MouthFamilyData::loadBoth(family_file));
+  return TongueFamily(SectionFamilyData::loadBoth(family_file));
 }
 
 FamilyTongue TongueFamily::tongue(const Eigen::VectorXd& coordinates) const {
-  const MouthFamilyData::Prediction found = data_.predict(coordinates);
+  const SectionFamilyData::Prediction found = data_.predict(coordinates);
   const Scene member = data_.family().member(coordinates);
   return {touchOf(member), tongueGrowth(member), found.curves, found.error[0], found.error[1]};
 }

@@ -101,7 +101,7 @@ double tongueGrowth(const Scene& member) {
   return growth - std::log(modulus + (1 - modulus) * squared / (squared + 0.4));
 }
 
-MouthMember solveTongue(const MouthFamily& family, const Eigen::VectorXd& coordinates) {
+SectionMember solveTongue(const SectionFamily& family, const Eigen::VectorXd& coordinates) {
   const Scene scene = family.member(coordinates);
   std::string reason;
   SolvedTongues solved;
@@ -112,7 +112,7 @@ MouthMember solveTongue(const MouthFamily& family, const Eigen::VectorXd& coordi
   if (count < kFewestEquilibria) throw std::runtime_error("the tongue's equilibria end early: " + reason);
   const double end = solved.roots.back();
   const Eigen::VectorXd roots = std::sqrt(kServedSuction) * end * tongueFractions().cwiseSqrt();
-  MouthMember member{coordinates, Eigen::MatrixXd(roots.size(), TongueCurves::kColumns)};
+  SectionMember member{coordinates, Eigen::MatrixXd(roots.size(), TongueCurves::kColumns)};
   std::vector<double> row(count);
   for (Eigen::Index k = 0; k < TongueCurves::kColumns; ++k) {
     for (std::size_t i = 0; i < count; ++i) row[i] = solved.columns[i][k];

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 
 #include "cell/family/family_tongue.h"
-#include "cell/family/mouth_family_data.h"
+#include "cell/family/section_family_data.h"
 
 namespace microinjection {
 
@@ -21,6 +21,6 @@ double tongueGrowth(const Scene& member);
 /// Follows the member's equilibria from no suction to where they end, on one mesh (level 0 to 1.6 of scene_mesh.h), and
 /// takes its TongueCurves. Takes some seconds. @throws std::runtime_error when there are too few equilibria, and as
 /// CellProblem does
-MouthMember solveTongue(const MouthFamily& family, const Eigen::VectorXd& coordinates);
+SectionMember solveTongue(const SectionFamily& family, const Eigen::VectorXd& coordinates);
 
 }  // namespace microinjection

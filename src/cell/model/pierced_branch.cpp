@@ -63,12 +63,24 @@ PiercedBranch::State PiercedBranch::whole(double depth) const {
   return {values.force, values.energy, 0};
 }
 
+std::size_t PiercedBranch::rightOf(double length) const {
+  std::size_t i = 1;
+  while (i + 1 < holes_.size() && holes_[i].length < length) ++i;
+  return i;
+}
+
+/// A needle that is not as far in its hole is not known to stay there.
+bool PiercedBranch::isSolved(double depth, double length) const {
+  const std::size_t right = rightOf(length);
+  const double first = std::max(holes_[right - 1].knots.front().beyond, holes_[right].knots.front().beyond);
+  return depth - length >= first;
+}
+
 /// Cubic in the length with slopes of parabolas: linear in the values, so that force and release are derivatives of one
 /// energy.
 PiercedBranch::State PiercedBranch::at(double depth, double length) const {
   const double inside = std::clamp(length, shortest(), longest()), beyond = depth - length;
-  std::size_t i = 1;
-  while (i + 1 < holes_.size() && holes_[i].length < inside) ++i;
+  const std::size_t i = rightOf(inside);
   const int count = static_cast<int>(holes_.size()), left = static_cast<int>(i) - 1;
   const auto value = [&](int k) { return valuesOf(holes_[k].knots, beyond); };
   const double width = holes_[left + 1].length - holes_[left].length, t = (inside - holes_[left].length) / width;
@@ -126,6 +138,7 @@ std::optional<PiercedBranch::Onset> PiercedBranch::findOnset() const {
     Length least{0, std::numeric_limits<double>::infinity()};
     for (int i = 0; i <= kLengths; ++i) {
       const double length = shortest() + (longest() - shortest()) * i / kLengths;
+      if (!isSolved(depth, length)) continue;
       const double excess = at(depth, length).energy + cost_ * length + barrier_ - whole(depth).energy;
       if (excess < least.excess) least = {length, excess};
     }

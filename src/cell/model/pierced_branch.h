@@ -56,7 +56,7 @@ class PiercedBranch {
   /// force are continued linearly in the length to shorter holes than the first and longer ones than the last.
   State at(double depth, double length) const;
 
-  /// None: the whole cell's path ends before.
+  /// Where the needle stands in a hole that is solved there. None: the whole cell's path ends before.
   const std::optional<Onset>& onset() const { return onset_; }
 
   /// m, of a hole that was `length` long while the needle went on to `depth`. It does not become shorter.
@@ -71,6 +71,8 @@ class PiercedBranch {
 
  private:
   std::optional<Onset> findOnset() const;
+  std::size_t rightOf(double length) const;  ///< of the two holes between which a length is
+  bool isSolved(double depth, double length) const;
 
   std::vector<Knot> whole_;
   std::vector<Hole> holes_;

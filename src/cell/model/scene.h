@@ -139,7 +139,7 @@ struct Scene {
   void requireGlued(const std::string& purpose) const;
   /// The scene with its cell glued to a ring where it would first touch the mouth that now holds it by suction; itself
   /// without a mouth. Of a cell 80 um across in a bore of 24 um, the needle's force on the axis then is up to 6 % from
-  /// that of the held cell (doc/reference/benchmarks.md, Suction); HeldForce knows the ratio of others.
+  /// that of the held cell (doc/reference/benchmarks.md, Suction); AxisForceRatio knows the ratio of others.
   Scene glued() const;
   /// Largest relative difference of the needle's force between the two, of one homogeneous cell in 20 cases:
   /// ./dev bench suction.

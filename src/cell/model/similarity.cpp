@@ -40,6 +40,10 @@ Scene withoutDimension(const Scene& scene) {
   divide(needle.contact.adhesion_energy, units.modulus * units.length);
   divide(needle.contact.adhesion_range, units.length);
   for (double& offset : needle.offset) divide(offset, units.length);
+  for (PunctureConfig::Layer& layer : result.cell.puncture.layers) {
+    divide(layer.toughness, units.modulus * units.length);
+    divide(layer.barrier, units.modulus * std::pow(units.length, 3));
+  }
   if (result.mesh.size) divide(*result.mesh.size, units.length);
   return result;
 }

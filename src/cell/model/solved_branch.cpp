@@ -26,7 +26,7 @@ constexpr double kBack = 2.5;                               // from the bottom, 
 constexpr double kLongest = 1.3;                            // hole, of the cell's radius
 constexpr double kDeepest = 1.7;                            // needle in the whole cell, same
 constexpr double kSmallestHole = 0.15, kLargestHole = 0.9;  // that the meshes can have
-constexpr int kVersion = 1;                                 // of what is stored
+constexpr int kVersion = 2;                                 // of what is stored
 
 double modulusOf(const Scene& scene) { return scene.cell.material().young_modulus; }
 
@@ -57,9 +57,10 @@ void requirePierceable(const Scene& scene) {
                       " has no limit of compression and cannot be pierced; use neo_hookean, ogden or gent");
 }
 
-std::vector<Knot> wholePath(PiercedCellConfig config, bool sticking) {
+std::vector<Knot> wholePath(PiercedCellConfig config, const Scene::Contact& contact) {
   config.hole_length = 0;
-  config.sticking = sticking;
+  config.sticking = contact.mode == "sticking";
+  config.friction = contact.friction;
   PiercedCell cell(config);
   std::vector<Knot> knots = {{0, 0, 0}};
   for (double depth = kStep; depth <= kDeepest * config.radius && cell.advance(depth); depth += kStep)
@@ -98,13 +99,8 @@ void scale(std::vector<Knot>& knots, double length, double force) {
   }
 }
 
-struct Paths {
-  std::vector<Knot> whole;
-  std::vector<Hole> holes;
-};
-
-Paths solvePaths(const Scene& scene, const SteadyPenetration& steady, double level,
-                 const std::function<void(int, int)>& report) {
+PiercedPaths solvePaths(const Scene& scene, const SteadyPenetration& steady, double level,
+                        const std::function<void(int, int)>& report) {
   PiercedCellConfig config = configOf(scene, steady, level);
   const double highest = kHighest * steady.force_in / modulusOf(scene);
   std::vector<double> lengths;
@@ -113,8 +109,8 @@ Paths solvePaths(const Scene& scene, const SteadyPenetration& steady, double lev
   }
   const int count = static_cast<int>(lengths.size()) + 1;
   if (report) report(0, count);
-  Paths paths;
-  paths.whole = wholePath(config, scene.needle.contact.mode == "sticking");
+  PiercedPaths paths;
+  paths.whole = wholePath(config, scene.needle.contact);
   for (int i = 0; i + 1 < count; ++i) {
     if (report) report(i + 1, count);
     config.hole_length = lengths[i];
@@ -130,16 +126,6 @@ Paths solvePaths(const Scene& scene, const SteadyPenetration& steady, double lev
   return paths;
 }
 
-PiercedBranch branchOf(Paths paths, const Scene& scene, const SteadyPenetration& steady) {
-  const PunctureConfig::Layer& layer = scene.cell.puncture.layers.front();
-  if (paths.holes.size() < 2)
-    throw ConfigError(
-        "cell/puncture/layers/0/toughness: the cell with a hole has no equilibrium with the needle in it");
-  const double around = 2 * M_PI * scene.needle.tip.radius;
-  return PiercedBranch(std::move(paths.whole), std::move(paths.holes), around * steady.hole_radius * layer.toughness,
-                       layer.barrier, around * steady.wall_pressure);
-}
-
 void write(std::ostream& out, const std::vector<Knot>& knots) {
   out << knots.size() << '\n';
   for (const Knot& knot : knots) out << knot.beyond << ' ' << knot.force << ' ' << knot.energy << '\n';
@@ -153,7 +139,7 @@ bool read(std::istream& in, std::vector<Knot>& knots) {
   return static_cast<bool>(in);
 }
 
-std::string textOf(const Paths& paths) {
+std::string textOf(const PiercedPaths& paths) {
   std::ostringstream out;
   out.precision(17);
   write(out, paths.whole);
@@ -165,9 +151,9 @@ std::string textOf(const Paths& paths) {
   return out.str();
 }
 
-std::optional<Paths> pathsOf(const std::string& text) {
+std::optional<PiercedPaths> pathsOf(const std::string& text) {
   std::istringstream in(text);
-  Paths paths;
+  PiercedPaths paths;
   std::size_t count = 0;
   if (!read(in, paths.whole) || !(in >> count) || count > kLengths.size()) return std::nullopt;
   paths.holes.resize(count);
@@ -216,9 +202,20 @@ std::string describePuncture(const PiercedBranch& branch, const Scene& scene) {
   return text;
 }
 
+PiercedBranch branchOf(PiercedPaths paths, const Scene& scene) {
+  const SteadyPenetration steady = steadyPenetration(scene);
+  const PunctureConfig::Layer& layer = scene.cell.puncture.layers.front();
+  if (paths.holes.size() < 2)
+    throw ConfigError(
+        "cell/puncture/layers/0/toughness: the cell with a hole has no equilibrium with the needle in it");
+  const double around = 2 * M_PI * scene.needle.tip.radius;
+  return PiercedBranch(std::move(paths.whole), std::move(paths.holes), around * steady.hole_radius * layer.toughness,
+                       layer.barrier, around * steady.wall_pressure);
+}
+
 PiercedBranch solvePiercedBranch(const Scene& scene, double level, const std::function<void(int, int)>& report) {
   const SteadyPenetration steady = steadyPenetration(scene);
-  return branchOf(solvePaths(scene, steady, level, report), scene, steady);
+  return branchOf(solvePaths(scene, steady, level, report), scene);
 }
 
 PiercedBranch storedPiercedBranch(const Scene& scene, const std::function<void(int, int)>& report) {
@@ -230,17 +227,17 @@ PiercedBranch storedPiercedBranch(const Scene& scene, const std::function<void(i
   const std::string path = folder.empty() ? "" : folder + "/" + contentHash(description.str()) + ".txt";
   if (!path.empty()) {
     if (const CacheRead<std::string> stored = readCacheFile(path, description.str())) {
-      if (std::optional<Paths> paths = pathsOf(*stored.content)) return branchOf(std::move(*paths), scene, steady);
+      if (std::optional<PiercedPaths> paths = pathsOf(*stored.content)) return branchOf(std::move(*paths), scene);
     }
   }
-  Paths paths = solvePaths(scene, steady, 0, report);
+  PiercedPaths paths = solvePaths(scene, steady, 0, report);
   if (!path.empty()) {
     try {
       writeCacheFile(path, description.str(), textOf(paths));
     } catch (const WriteError&) {  // a full or read-only disk: it is solved again next time
     }
   }
-  return branchOf(std::move(paths), scene, steady);
+  return branchOf(std::move(paths), scene);
 }
 
 }  // namespace microinjection

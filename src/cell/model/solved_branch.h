@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "cell/model/pierced_branch.h"
 #include "cell/model/scene.h"
@@ -24,6 +25,15 @@ PiercedBranch solvePiercedBranch(const Scene& scene, double level = 0,
 
 /// The same from the user's cache, or solved and stored there.
 PiercedBranch storedPiercedBranch(const Scene& scene, const std::function<void(int, int)>& report = {});
+
+/// Pi0(d) and Pi(d, l) of PiercedBranch, without what the crack costs.
+struct PiercedPaths {
+  std::vector<PiercedBranch::Knot> whole;
+  std::vector<PiercedBranch::Hole> holes;
+};
+
+/// With the toughness, barrier and wall of the scene. @throws ConfigError as solvePiercedBranch()
+PiercedBranch branchOf(PiercedPaths paths, const Scene& scene);
 
 /// For the user: where it is pierced, and the force 3 tip radii further on, beside that of the long hole in the same
 /// material (DeepPenetration), which is exact far behind the surface.

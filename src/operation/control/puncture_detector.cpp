@@ -10,6 +10,7 @@ constexpr int kShortest = 4, kLongest = 256;
 constexpr int kLags[] = {0, 1, 2, 4};      ///< windows between those that are compared
 constexpr int kTests = 28;                 ///< a sample, of windows and lags
 constexpr int kSpan = 2048;                ///< samples that are kept
+constexpr int kHistory = 3;                ///< and over this many times what is compared: fast motion relaxes
 constexpr int kRough = 64;                 ///< longest window in which the speed may fall to half
 constexpr double kKept = 0.9;              ///< of the speed, in the others
 constexpr double kSteadyShare = 0.4;       ///< of the smallest fall, while the needle goes steadily,
@@ -64,7 +65,7 @@ bool PunctureDetector::fell(int window, int lag) const {
 
 bool PunctureDetector::isSteady(int window, int lag) const {
   const int oldest = static_cast<int>(std::min<long>(kSpan, count_ - 1));
-  if (count_ - 1 < kSettled + 2 * window + lag) return false;
+  if (oldest < kSettled + kHistory * (2 * window + lag)) return false;
   const auto speed = [&](int end) {  // of the block of a window's length that ends there
     const int begin = std::min(end + window, oldest);
     return (before(end).travel - before(begin).travel) / (begin - end);

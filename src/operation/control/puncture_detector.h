@@ -20,8 +20,9 @@ namespace microinjection {
 /// ones: the force of an elastic or relaxing cell does not fall while the speed stays.
 ///
 /// A membrane that tears while the shaft is rubbed, or one that fades within the window, takes less away, and the ramp
-/// before it hides a part of the fall. So two fifths of the share are enough for a needle that goes steadily: it has
-/// not been faster for 2 s, nor slower since the earlier window, which may end up to 4 m samples before the later one.
+/// before it hides a part of the fall. So two fifths of the share are enough for a needle that goes steadily: over
+/// three times what is compared, and over all that is known to 2048 samples, it has not been faster, nor slower since
+/// the earlier window, which may end up to 4 m samples before the later one.
 class PunctureDetector {
  public:
   /// @param noise       of the force at rest
@@ -36,12 +37,12 @@ class PunctureDetector {
   bool step(double force, double travel);
   void reset() { count_ = 0; }  ///< begins anew, without a pause
 
-  /// Samples to detect the smallest fall that counts, from a force (N, above the offset), with one
-  /// miss in 50.
+  /// Samples to detect the smallest fall that counts at any speed, `drop_share`, from a force (N, above the offset),
+  /// with one miss in 50.
   double latency(double force) const;
   /// A step without a sample: the pause after a puncture is a time of the cell.
   void wait() { paused_ -= paused_ > 0 ? 1 : 0; }
-  double meanForce(int samples) const;  ///< N above the offset, of the last samples (at most 512) since it was reset
+  double meanForce(int samples) const;  ///< N above the offset, of the last samples (at most 2048) since it was reset
 
  private:
   struct Sample {

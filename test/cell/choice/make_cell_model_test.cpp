@@ -12,7 +12,7 @@
 
 #include "base/errors.h"
 #include "cell/choice/model_choice.h"
-#include "cell/family/held_force_family.h"
+#include "cell/family/axis_force_ratio.h"
 #include "cell/family/made_up_family.h"
 #include "cell/surrogate/cached_cell.h"
 
@@ -238,6 +238,34 @@ TEST_F(ServeNeedle, WhatCannotBePreparedIsLive) {
   EXPECT_FALSE(served.as_required);
   EXPECT_TRUE(has(served.description, "cannot be prepared (")) << served.description;
   EXPECT_TRUE(has(served.description, "so it is live: P2-P0")) << served.description;
+}
+
+/// Against the force of CellProblem on two meshes.
+TEST_F(ServeNeedle, FrictionOnTheAxisIsServedByTheShippedFamilies) {
+  Scene rubbing = pipette();
+  rubbing.needle.contact = {"sliding", 0.1};
+  CellModelConfig config;
+  config.families = MICROINJECTION_SOURCE_DIR "/config/families";
+  const ChosenCellModel served = makeCellModel(rubbing, "auto", config, "a.yaml");
+  EXPECT_TRUE(served.as_required) << served.description;
+  EXPECT_TRUE(has(served.description, "for a tip that rubs, with an error of")) << served.description;
+  EXPECT_EQ(served.change, nullptr);
+  served.cell->step({0, 0, rubbing.radius() + 1e-6}, Eigen::Vector3d::UnitZ(), 0);
+  const double force = served.cell->step({0, 0, rubbing.radius() - 14e-6}, Eigen::Vector3d::UnitZ(), 1).force.z();
+  EXPECT_NEAR(force, 1.183e-6, 0.02 * 1.183e-6);  // ./dev bench friction
+  rubbing.needle.offset = {5e-6, 0};
+  const ChosenCellModel beside = makeCellModel(rubbing, "auto", config, "a.yaml");
+  EXPECT_TRUE(has(beside.description, "friction on the axis only")) << beside.description;
+}
+
+TEST_F(ServeNeedle, APiercedCellIsServedByTheShippedFamily) {
+  const Scene scene = loadScene(MICROINJECTION_SOURCE_DIR "/config/cells/mouse_oocyte_tough.yaml");
+  CellModelConfig config;
+  config.families = MICROINJECTION_SOURCE_DIR "/config/families";
+  config.tell = [](const std::string& text) { ADD_FAILURE() << text; };  // nothing is solved
+  const ChosenCellModel served = makeCellModel(scene, "auto", config, "a.yaml");
+  EXPECT_TRUE(has(served.description, "its branches are those of a family, with errors below")) << served.description;
+  EXPECT_TRUE(has(served.description, "pierced at 0.41")) << served.description;
 }
 
 TEST_F(ServeNeedle, FrictionIsLiveUntilItIsPrepared) {

@@ -45,6 +45,20 @@ TEST(PiercedBranch, FailsWhereTheHoleHasLessEnergyWithItsCost) {
   EXPECT_FALSE(springBranch(20e-6).onset()) << "the whole cell's path ends before";
 }
 
+/// Continued to the pole, the force with which its path begins would give the shortest hole a negative energy there.
+TEST(PiercedBranch, BeginsOnlyWhereTheNeedleIsKnownToStayInTheHole) {
+  SpringBranch made;
+  std::vector<PiercedBranch::Hole> holes;
+  for (const double length : {1e-6, 3e-6, 7e-6, 15e-6, 30e-6}) holes.push_back({length, made.path(length)});
+  auto& knots = holes.front().knots;
+  knots.erase(knots.begin(), knots.begin() + 12);
+  const PiercedBranch late(made.path(0), holes, kCrack);
+  EXPECT_LT(late.at(0, 1e-6).energy + kCrack * 1e-6, 0) << "the test would not notice";
+  ASSERT_TRUE(late.onset());
+  const double depth = closedOnset(kCrack, 0);
+  EXPECT_NEAR(late.onset()->depth, depth, 1e-3 * depth);
+}
+
 TEST(PiercedBranch, ForceAndReleaseAreSlopesOfTheEnergy) {
   const PiercedBranch tough = springBranch();
   constexpr double kStep = 1e-9;

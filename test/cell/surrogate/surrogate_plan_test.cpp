@@ -34,13 +34,17 @@ TEST(SurrogatePlan, RefusesWhatHasNoEnergy) {
   const SurrogateRange range = SurrogateRange::standard(scene);
   EXPECT_EQ(SurrogatePlan::plan(scene, range).description(scene),  // one equilibrium
             SurrogatePlan::plan(relaxing, range).description(relaxing));
-  Scene viscous = scene, rubbing = scene, different = relaxing;
-  viscous.cell.material().viscoelasticity.viscosity = 1;
+  Scene rubbing = scene;
   rubbing.needle.contact = {"sliding", 0.2};
+  EXPECT_NO_THROW(SurrogatePlan::check(rubbing)) << "its way in is prepared";
+  Scene viscous = scene, sticky = scene, different = relaxing;
+  viscous.cell.material().viscoelasticity.viscosity = 1;
+  sticky.needle.contact.adhesion_energy = 1e-3;
+  sticky.needle.contact.adhesion_range = 1e-7;
   different.cell.layers.push_back(different.cell.layers.front());
   different.cell.layers.back().outer_radius /= 2;
   different.cell.layers.back().material.viscoelasticity.prony[0].relaxation_time = 1;
-  for (const Scene& bad : {viscous, rubbing, different}) EXPECT_THROW(SurrogatePlan::check(bad), ConfigError);
+  for (const Scene& bad : {viscous, sticky, different}) EXPECT_THROW(SurrogatePlan::check(bad), ConfigError);
 }
 
 TEST(SurrogatePlan, RefusesASharpDiscButOnALinearCell) {

@@ -203,6 +203,10 @@ TEST_F(DetectorsTest, StopRelaxationAndWithdrawalAreNoPuncture) {
         << "to and fro";
     detector.reset();
     EXPECT_FALSE(findsPuncture(detector, {{200e-9, 60}, {20e-9, 1500}}, relaxation, noisy)) << "fast, then slow";
+    for (const double slow : {1e-9, 1.5e-9, 3e-9}) {
+      detector.reset();
+      EXPECT_FALSE(findsPuncture(detector, {{200e-9, 60}, {slow, 4000}}, relaxation, noisy)) << "fast, then very slow";
+    }
     detector.reset();
     EXPECT_FALSE(findsPuncture(detector, {{20e-9, 300}, {10e-9, 300}, {20e-9, 300}}, relaxation, noisy))
         << "slower for a while";

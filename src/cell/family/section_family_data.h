@@ -7,21 +7,21 @@
 
 #include "base/cache_file.h"
 #include "cell/family/family_error.h"
-#include "cell/family/mouth_family.h"
+#include "cell/family/section_family.h"
 
 namespace microinjection {
 
-/// A solved member of a MouthFamily: curves over the suction, or over the depth (rows), each a column. The first two
+/// A solved member of a SectionFamily: curves over the suction, or over the depth (rows), each a column. The first two
 /// columns, or the only one, are logarithms of what an error is told of.
-struct MouthMember {
+struct SectionMember {
   Eigen::VectorXd coordinates;
   Eigen::MatrixXd curves;
 };
 
-/// The solved members of a MouthFamily, from which any other one's curves are predicted: sums with the weights of
-/// Kriging. One fidelity, unlike FamilyData, because a member costs seconds. predict() needs an update() or a load()
-/// after the last add(); several threads may then use it at once.
-class MouthFamilyData {
+/// The solved members of a SectionFamily, from which any other one's curves are predicted: sums with the weights of
+/// Kriging. One fidelity, unlike FamilyData, because a member costs seconds, a pierced one half a minute. predict()
+/// needs an update() or a load() after the last add(); several threads may then use it at once.
+class SectionFamilyData {
  public:
   struct Prediction {
     Eigen::MatrixXd curves;
@@ -31,17 +31,17 @@ class MouthFamilyData {
     Eigen::Vector2d error;
   };
 
-  explicit MouthFamilyData(MouthFamily family)
+  explicit SectionFamilyData(SectionFamily family)
       : family_(std::move(family)), covariance_{Eigen::VectorXd::Constant(family_.dimension(), 2), 0} {}
 
-  const MouthFamily& family() const { return family_; }
-  const std::vector<MouthMember>& members() const { return members_; }
+  const SectionFamily& family() const { return family_; }
+  const std::vector<SectionMember>& members() const { return members_; }
   const std::vector<Eigen::VectorXd>& failed() const { return failed_; }  ///< coordinates without a solution
   /// Where the data come from: text for the reader of the file, kept as it was stored.
   const std::string& provenance() const { return provenance_; }
   void setProvenance(std::string text) { provenance_ = std::move(text); }
 
-  void add(MouthMember member) { members_.push_back(std::move(member)); }
+  void add(SectionMember member) { members_.push_back(std::move(member)); }
   void addFailed(const Eigen::VectorXd& coordinates) { failed_.push_back(coordinates); }
   /// Chooses the covariance and estimates the errors anew.
   void update();
@@ -62,19 +62,19 @@ class MouthFamilyData {
   /// Throws WriteError.
   void save(const std::string& path) const;
   /// The state is kOther for data of another family or version, and kDamaged for an invalid size or value.
-  static CacheRead<MouthFamilyData> load(const MouthFamily& family, const std::string& path);
+  static CacheRead<SectionFamilyData> load(const SectionFamily& family, const std::string& path);
   /// Family file and data beside it. @throws ConfigError where one of them cannot be used
-  static MouthFamilyData loadBoth(const std::string& family_file);
+  static SectionFamilyData loadBoth(const std::string& family_file);
 
  private:
   Eigen::MatrixXd points() const;
   bool isNearFailed(const Eigen::VectorXd& coordinates) const;
   void prepare();
-  static MouthFamilyData decode(const MouthFamily& family, const std::string& bytes);
+  static SectionFamilyData decode(const SectionFamily& family, const std::string& bytes);
 
-  MouthFamily family_;
+  SectionFamily family_;
   std::string provenance_;
-  std::vector<MouthMember> members_;
+  std::vector<SectionMember> members_;
   std::vector<Eigen::VectorXd> failed_;
   Covariance covariance_;
   ExpectedError left_out_[2], per_deviation_[2];  ///< the latter: the same over Kriging::deviation

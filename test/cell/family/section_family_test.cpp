@@ -1,5 +1,5 @@
-// Families of cells in the mouth of a pipette: their tongues, and what a needle feels of them.
-#include "cell/family/mouth_family.h"
+// Families whose members are curves of the section: tongues, forces on the axis, branches of pierced cells.
+#include "cell/family/section_family.h"
 
 #include <gtest/gtest.h>
 
@@ -12,13 +12,15 @@
 
 #include "base/atomic_file.h"
 #include "base/errors.h"
+#include "cell/family/axis_force_ratio.h"
 #include "cell/family/family_cell.h"
-#include "cell/family/held_force_family.h"
+#include "cell/family/pierced_family.h"
 #include "cell/family/tongue_family.h"
 #include "cell/family/tongue_member.h"
 #include "cell/model/cell_problem.h"
 #include "cell/model/converged_tongue.h"
 #include "cell/model/scene_mesh.h"
+#include "cell/model/solved_branch.h"
 
 namespace microinjection {
 namespace {
@@ -174,8 +176,8 @@ class MadeUpTongues : public testing::Test {
   }
   void TearDown() override { std::filesystem::remove(path_); }
 
-  static MouthMember member(const Eigen::Vector4d& x) {
-    MouthMember made{x, Eigen::MatrixXd::Zero(TongueCurves::kNodes, TongueCurves::kColumns)};
+  static SectionMember member(const Eigen::Vector4d& x) {
+    SectionMember made{x, Eigen::MatrixXd::Zero(TongueCurves::kNodes, TongueCurves::kColumns)};
     made.curves.col(TongueCurves::kLogLength).setConstant(0.2 * x[0] - 0.1 * x[1]);
     made.curves.col(TongueCurves::kLogEnd).setConstant(-1 + 0.1 * x[2]);
     made.curves.col(TongueCurves::kSeal).setConstant(1 + 0.05 * x[3]);
@@ -183,7 +185,7 @@ class MadeUpTongues : public testing::Test {
     return made;
   }
 
-  MouthFamilyData data_{MouthFamily::load(kFamilies + "/tongues/homogeneous.yaml")};
+  SectionFamilyData data_{SectionFamily::load(kFamilies + "/tongues/homogeneous.yaml")};
   const std::string path_ = testing::TempDir() + "microinjection_tongues.data";
 };
 
@@ -201,7 +203,7 @@ TEST_F(MadeUpTongues, HaveTheFormOfTheSolvedOnes) {
 
 TEST_F(MadeUpTongues, AreKeptInAFile) {
   data_.save(path_);
-  const auto read = MouthFamilyData::load(data_.family(), path_);
+  const auto read = SectionFamilyData::load(data_.family(), path_);
   ASSERT_TRUE(read) << read.reason;
   EXPECT_EQ(read.content->provenance(), "made up");
   const Eigen::Vector4d x(0.1, 0.2, 0.3, 0.4);
@@ -209,22 +211,22 @@ TEST_F(MadeUpTongues, AreKeptInAFile) {
 }
 
 TEST_F(MadeUpTongues, AFileThatIsMissingCutOrOfAnotherFamilyIsNotUsed) {
-  EXPECT_EQ(MouthFamilyData::load(data_.family(), path_).state, CacheState::kMissing);
+  EXPECT_EQ(SectionFamilyData::load(data_.family(), path_).state, CacheState::kMissing);
   data_.save(path_);
-  const MouthFamily other = MouthFamily::load(kFamilies + "/tongues/zona.yaml");
-  EXPECT_EQ(MouthFamilyData::load(other, path_).state, CacheState::kOther);
+  const SectionFamily other = SectionFamily::load(kFamilies + "/tongues/zona.yaml");
+  EXPECT_EQ(SectionFamilyData::load(other, path_).state, CacheState::kOther);
   std::ifstream file(path_, std::ios::binary);
   std::string bytes((std::istreambuf_iterator<char>(file)), {});
   writeFileAtomically(path_, bytes.substr(0, bytes.size() - 100));
-  EXPECT_EQ(MouthFamilyData::load(data_.family(), path_).state, CacheState::kDamaged);
+  EXPECT_EQ(SectionFamilyData::load(data_.family(), path_).state, CacheState::kDamaged);
   const std::string version = " data 1 checksum";
   ASSERT_NE(bytes.find(version), std::string::npos);
   writeFileAtomically(path_, bytes.replace(bytes.find(version), version.size(), " data 0 checksum"));
-  EXPECT_EQ(MouthFamilyData::load(data_.family(), path_).state, CacheState::kOther);
+  EXPECT_EQ(SectionFamilyData::load(data_.family(), path_).state, CacheState::kOther);
 }
 
 TEST_F(MadeUpTongues, TooFewMembersServeNothing) {
-  MouthFamilyData few(data_.family());
+  SectionFamilyData few(data_.family());
   for (int i = 0; i < 8; ++i) few.add(data_.members()[i]);
   few.update();
   const std::string reason = reasonOf([&] { TongueFamily(few).tongue(Eigen::VectorXd::Zero(4)); });
@@ -238,7 +240,7 @@ TEST_F(MadeUpTongues, ServeNothingNearAMemberWithoutSolution) {
   EXPECT_EQ(reasonOf([&] { family.tongue(Eigen::Vector4d(1, 1, 1, 0.9)); }), "");
 }
 
-TEST(HeldForce, IsTheRatioOfTwoSolutions) {
+TEST(AxisForceRatio, IsTheRatioOfTwoSolutions) {
   Scene scene = mouseHeld();
   scene.needle.tip.radius = 0.12 * scene.radius();
   std::string reason;
@@ -255,7 +257,95 @@ TEST(HeldForce, IsTheRatioOfTwoSolutions) {
   EXPECT_LT(held->error(), 0.03);
 }
 
-TEST(HeldForce, RefusesWhatIsOutside) {
+Scene rubbed(double friction) {
+  Scene scene = loadScene(MICROINJECTION_SOURCE_DIR "/config/cells/mouse_oocyte_pipette.yaml");
+  scene.needle.contact = {"sliding", friction};
+  return scene;
+}
+
+TEST(AxisForceRatio, IsThatOfATipThatRubs) {
+  const Scene scene = rubbed(0.15);
+  std::string reason;
+  const auto ratio = findFrictionForce(kFamilies, scene, reason);
+  ASSERT_TRUE(ratio) << reason;
+  CellProblem<2> own(scene, makeSceneMesh<2>(scene, 0), ElementKind::kP2P0);
+  const Scene sticking = stuck(scene);
+  CellProblem<2> other(sticking, makeSceneMesh<2>(sticking, 0), ElementKind::kP2P0);
+  for (const double depth : {0.1, 0.5}) {  // a quarter of the diameter
+    const Eigen::Vector3d tip(0, 0, -depth * scene.radius());
+    EXPECT_NEAR(ratio->ratio(depth), own.solve(tip).force.z() / other.solve(tip).force.z(), ratio->error()) << depth;
+  }
+  EXPECT_LT(ratio->error(), 0.02);
+  EXPECT_NEAR(findFrictionForce(kFamilies, rubbed(3), reason)->ratio(0.5), 1, 0.01);
+  EXPECT_FALSE(findFrictionForce(kFamilies, rubbed(0.05), reason));
+  EXPECT_TRUE(says(reason, "friction = 0.05: must be from 0.1 to 0.5")) << reason;
+}
+
+/// Of a cell that no member is.
+TEST(FamilyBranch, IsThatOfASolution) {
+  Scene scene = loadScene(MICROINJECTION_SOURCE_DIR "/config/cells/mouse_oocyte_tough.yaml");
+  scene.cell.puncture.layers.front().toughness *= 0.75;
+  scene.needle.tip.radius *= 1.07;
+  std::string reason;
+  const auto found = findFamilyBranch(kFamilies, scene, reason);
+  ASSERT_TRUE(found) << reason;
+  const PiercedBranch solved = solvePiercedBranch(scene), &own = found->branch;
+  ASSERT_TRUE(solved.onset() && own.onset());
+  EXPECT_NEAR(own.onset()->depth, solved.onset()->depth, 0.05 * solved.onset()->depth);
+  double ours = own.onset()->length, theirs = solved.onset()->length;
+  for (double beyond = 1e-6; beyond < 10e-6; beyond += 1e-6) {
+    const double depth = solved.onset()->depth + beyond,
+                 force = solved.at(depth, theirs = solved.grown(depth, theirs)).force;
+    EXPECT_NEAR(own.at(depth, ours = own.grown(depth, ours)).force, force, 0.05 * force) << beyond;
+  }
+  for (const double depth : {2e-6, 4e-6})
+    EXPECT_NEAR(own.whole(depth).force, solved.whole(depth).force, 0.05 * solved.whole(depth).force);
+  EXPECT_LT(found->pierced_error, 0.05);
+}
+
+/// The reason for which a shipped family file is refused once a line of it is another one.
+std::string refusalOf(const std::string& file, const std::string& line, const std::string& other) {
+  std::ifstream shipped(kFamilies + file);
+  std::string text(std::istreambuf_iterator<char>(shipped), {});
+  const std::size_t at = text.find(line);
+  EXPECT_NE(at, std::string::npos) << line;
+  text.replace(at, line.size(), other);
+  const std::string path = testing::TempDir() + "microinjection_section.yaml";
+  writeFileAtomically(path, text);
+  const std::string reason = reasonOf([&] { SectionFamily::load(path); });
+  std::filesystem::remove(path);
+  return reason;
+}
+
+TEST(SectionFamily, RefusesAFileThatDoesNotNameWhatItsKindNeeds) {
+  const std::string pierced = "/pierced/homogeneous.yaml", friction = "/friction/homogeneous.yaml";
+  EXPECT_TRUE(says(refusalOf(pierced, "  toughness: [0.3, 2] ", "  #"), "must name toughness"));
+  EXPECT_TRUE(says(refusalOf(pierced, "  toughness: [0.3, 2] ", "  friction: [0.1, 1] "), "belongs to another kind"));
+  EXPECT_TRUE(says(refusalOf(pierced, "puncture: {toughness: 0.036}", "puncture: {force: 1}"), "has no toughness"));
+  EXPECT_TRUE(says(refusalOf(friction, "  friction: [0.1, 0.5] ", "  #"), "must name friction"));
+  EXPECT_TRUE(says(refusalOf(friction, "friction: 0.2", "friction: 0"), "needle/contact/friction is 0"));
+}
+
+TEST(FamilyBranch, IsSolvedWhereTheFamilyHasNoOnset) {
+  Scene scene = loadScene(MICROINJECTION_SOURCE_DIR "/config/cells/mouse_oocyte_tough.yaml");
+  scene.cell.puncture.layers.front().barrier = 1e-9;
+  std::string reason;
+  EXPECT_FALSE(findFamilyBranch(kFamilies, scene, reason));
+  EXPECT_TRUE(says(reason, "nothing pierces the cell to the depth that it has")) << reason;
+}
+
+TEST(FamilyBranch, RefusesWhatIsOutside) {
+  Scene scene = loadScene(MICROINJECTION_SOURCE_DIR "/config/cells/mouse_oocyte_tough.yaml");
+  std::string reason;
+  scene.cell.puncture.layers.front().toughness *= 3;
+  EXPECT_FALSE(findFamilyBranch(kFamilies, scene, reason));
+  EXPECT_TRUE(says(reason, "toughness = ") && says(reason, "must be from 0.3 to 2")) << reason;
+  scene.cell.puncture = PunctureConfig::atForce(1e-6);
+  EXPECT_FALSE(findFamilyBranch(kFamilies, scene, reason));
+  EXPECT_TRUE(says(reason, "cell/puncture has no toughness")) << reason;
+}
+
+TEST(AxisForceRatio, RefusesWhatIsOutside) {
   Scene scene = mouseHeld();
   scene.holding_pipette.mouth->pressure = -0.5 * scene.cell.material().young_modulus;
   std::string reason;
@@ -265,9 +355,9 @@ TEST(HeldForce, RefusesWhatIsOutside) {
   EXPECT_TRUE(says(reason, "/nowhere/held has no family")) << reason;
 }
 
-TEST(HeldForce, ScalesTheForceOnTheAxis) {
-  const Eigen::VectorXd depths = heldForceDepths();
-  const HeldForce held(0.1 * depths.cwiseSqrt(), 0.004);
+TEST(AxisForceRatio, ScalesTheForceOnTheAxis) {
+  const Eigen::VectorXd depths = axisRatioDepths();
+  const AxisForceRatio held(0.1 * depths.cwiseSqrt(), 0.004);
   EXPECT_NEAR(held.ratio(0.3), std::exp(0.1 * std::sqrt(0.3)), 1e-6);
   EXPECT_EQ(held.ratio(2), held.ratio(0.6));
   std::string reason;

@@ -1,4 +1,4 @@
-#include "cell/family/mouth_family_data.h"
+#include "cell/family/section_family_data.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,11 +14,11 @@
 namespace microinjection {
 namespace {
 
-constexpr char kMouthVersion[] = " data 1";  ///< change it when the format or the solution changes
-constexpr std::uint64_t kMostCurves = 1000;  ///< members, or columns of one
+constexpr char kSectionVersion[] = " data 1";  ///< change it when the format or the solution changes
+constexpr std::uint64_t kMostCurves = 1000;    ///< members, or columns of one
 
 /// Relative errors of each member's values in a column, predicted with these weights.
-std::vector<std::vector<double>> columnErrors(const std::vector<MouthMember>& members, int column,
+std::vector<std::vector<double>> columnErrors(const std::vector<SectionMember>& members, int column,
                                               const Eigen::MatrixXd& weights) {
   Eigen::MatrixXd known(members.size(), members.front().curves.rows());
   for (std::size_t i = 0; i < members.size(); ++i)
@@ -83,13 +83,13 @@ Eigen::Index readSmallCount(ByteReader& reader) {
 
 }  // namespace
 
-Eigen::MatrixXd MouthFamilyData::points() const {
+Eigen::MatrixXd SectionFamilyData::points() const {
   Eigen::MatrixXd result(family_.dimension(), members_.size());
   for (std::size_t i = 0; i < members_.size(); ++i) result.col(static_cast<Eigen::Index>(i)) = members_[i].coordinates;
   return result;
 }
 
-Eigen::MatrixXd MouthFamilyData::knownPoints() const {
+Eigen::MatrixXd SectionFamilyData::knownPoints() const {
   Eigen::MatrixXd result(family_.dimension(), members_.size() + failed_.size());
   result.leftCols(static_cast<Eigen::Index>(members_.size())) = points();
   for (std::size_t i = 0; i < failed_.size(); ++i)
@@ -97,13 +97,16 @@ Eigen::MatrixXd MouthFamilyData::knownPoints() const {
   return result;
 }
 
-void MouthFamilyData::prepare() {
+void SectionFamilyData::prepare() {
   if (!members_.empty()) kriging_.emplace(points(), covariance_.lengths, covariance_.noise);
 }
 
-void MouthFamilyData::update() {
+void SectionFamilyData::update() {
   if (members_.size() < 2) return;
-  covariance_ = chooseCovariance(points(), [&](const auto& weights) { return columnErrors(members_, 0, weights); });
+  // What is pierced depends on the toughness, the whole cell does not.
+  const int hardest = family_.kind() == SectionFamily::Kind::kPierced ? 1 : 0;
+  covariance_ =
+      chooseCovariance(points(), [&](const auto& weights) { return columnErrors(members_, hardest, weights); });
   prepare();
   const Eigen::MatrixXd weights = kriging_->leaveOneOut();
   const Eigen::VectorXd deviations = leftOutDeviations(points(), covariance_);
@@ -114,21 +117,21 @@ void MouthFamilyData::update() {
   }
 }
 
-Eigen::VectorXd MouthFamilyData::coordinatesOf(const Scene& scene) const {
+Eigen::VectorXd SectionFamilyData::coordinatesOf(const Scene& scene) const {
   std::string misfit;
   auto coordinates = family_.coordinatesOf(scene, &misfit);
   if (!coordinates) throw ConfigError("family " + family_.name() + ": " + misfit);
   return std::move(*coordinates);
 }
 
-bool MouthFamilyData::isNearFailed(const Eigen::VectorXd& coordinates) const {
+bool SectionFamilyData::isNearFailed(const Eigen::VectorXd& coordinates) const {
   const auto distance = [&](const Eigen::VectorXd& point) { return (point - coordinates).norm(); };
   double nearest = std::numeric_limits<double>::infinity();
-  for (const MouthMember& member : members_) nearest = std::min(nearest, distance(member.coordinates));
+  for (const SectionMember& member : members_) nearest = std::min(nearest, distance(member.coordinates));
   return std::any_of(failed_.begin(), failed_.end(), [&](const auto& point) { return distance(point) < nearest; });
 }
 
-MouthFamilyData::Prediction MouthFamilyData::predict(const Eigen::VectorXd& coordinates) const {
+SectionFamilyData::Prediction SectionFamilyData::predict(const Eigen::VectorXd& coordinates) const {
   if (const std::string refusal = family_.refusal(coordinates); !refusal.empty())
     throw ConfigError("family " + family_.name() + ": " + refusal);
   if (!isComplete())
@@ -136,7 +139,7 @@ MouthFamilyData::Prediction MouthFamilyData::predict(const Eigen::VectorXd& coor
   if (isNearFailed(coordinates))
     throw ConfigError("family " + family_.name() + ": the member nearest to this cell has no solution");
   const Eigen::VectorXd weights = kriging_->weights(coordinates);
-  const MouthMember& first = members_.front();
+  const SectionMember& first = members_.front();
   Prediction result{Eigen::MatrixXd::Zero(first.curves.rows(), first.curves.cols()), Eigen::Vector2d::Zero()};
   for (std::size_t i = 0; i < members_.size(); ++i)
     result.curves += weights[static_cast<Eigen::Index>(i)] * members_[i].curves;
@@ -146,7 +149,7 @@ MouthFamilyData::Prediction MouthFamilyData::predict(const Eigen::VectorXd& coor
   return result;
 }
 
-void MouthFamilyData::save(const std::string& path) const {
+void SectionFamilyData::save(const std::string& path) const {
   ByteWriter writer;
   writer.array(provenance_);
   writer.array(covariance_.lengths);
@@ -160,16 +163,16 @@ void MouthFamilyData::save(const std::string& path) const {
   writer.number<std::uint64_t>(members_.size());
   writer.number<std::uint64_t>(members_.empty() ? 0 : members_.front().curves.rows());
   writer.number<std::uint64_t>(members_.empty() ? 0 : members_.front().curves.cols());
-  for (const MouthMember& member : members_) {
+  for (const SectionMember& member : members_) {
     write(writer, member.coordinates);
     write(writer, member.curves);
   }
-  writeCacheFile(path, family_.description() + kMouthVersion, writer.bytes());
+  writeCacheFile(path, family_.description() + kSectionVersion, writer.bytes());
 }
 
-MouthFamilyData MouthFamilyData::decode(const MouthFamily& family, const std::string& bytes) {
+SectionFamilyData SectionFamilyData::decode(const SectionFamily& family, const std::string& bytes) {
   ByteReader reader(bytes);
-  MouthFamilyData data(family);
+  SectionFamilyData data(family);
   reader.array(data.provenance_);
   reader.array(data.covariance_.lengths);
   if (data.covariance_.lengths.size() != family.dimension() || !(data.covariance_.lengths.minCoeff() > 0))
@@ -193,18 +196,18 @@ MouthFamilyData MouthFamilyData::decode(const MouthFamily& family, const std::st
   return data;
 }
 
-CacheRead<MouthFamilyData> MouthFamilyData::load(const MouthFamily& family, const std::string& path) {
-  const CacheRead<std::string> read = readCacheFile(path, family.description() + kMouthVersion);
-  if (!read) return read.failure<MouthFamilyData>();
+CacheRead<SectionFamilyData> SectionFamilyData::load(const SectionFamily& family, const std::string& path) {
+  const CacheRead<std::string> read = readCacheFile(path, family.description() + kSectionVersion);
+  if (!read) return read.failure<SectionFamilyData>();
   try {
     return {decode(family, *read.content), CacheState::kRead, ""};
   } catch (const std::exception& error) {
-    return damagedCache<MouthFamilyData>(path, error.what());
+    return damagedCache<SectionFamilyData>(path, error.what());
   }
 }
 
-MouthFamilyData MouthFamilyData::loadBoth(const std::string& family_file) {
-  CacheRead<MouthFamilyData> read = load(MouthFamily::load(family_file), familyDataFile(family_file));
+SectionFamilyData SectionFamilyData::loadBoth(const std::string& family_file) {
+  CacheRead<SectionFamilyData> read = load(SectionFamily::load(family_file), familyDataFile(family_file));
   if (!read) throw ConfigError(read.reason + "; to make it: prepare --family " + family_file);
   return std::move(*read.content);
 }
