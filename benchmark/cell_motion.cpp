@@ -122,8 +122,9 @@ void addSlip(Rows& rows, double beside) {
   const Vector3d force = motion.state().needle.force;
   const Vector3d out = (input.needle->position + kHeldTip * Vector3d::UnitX() - motion.state().position).normalized();
   const Quaterniond own = input.mouth.orientation.conjugate();
-  rows.add("needle_slip", beside, force.norm(), motion.limits(-2000).largest(own * (config.radius * out), own * force),
-           "N");
+  const double seal = heldMouth().touchRadius(config.radius);
+  const HoldLimits limits(2000 * M_PI * seal * seal, seal, config.radius, config.friction.lip);  // of a rigid sphere
+  rows.add("needle_slip", beside, force.norm(), limits.largest(own * (config.radius * out), own * force), "N");
 }
 
 /// Between a shaft that lies across and moves, and the dish.

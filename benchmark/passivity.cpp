@@ -26,6 +26,12 @@ constexpr double kDecay = 0.95;     // an oscillation that keeps more than this 
 constexpr int kWays = 400;          // of a needle alone
 constexpr double kRounding = 1e-3;  // of what the needle has given, that it may get back: rounding of its steps
 
+struct DrivenNeedle {
+  double fastest, period;  // m/s, s
+};
+/// What an operator does; far beyond it, in steps as long as the dent; the same, finely sampled.
+constexpr DrivenNeedle kDrivenNeedles[] = {{300e-6, 1e-3}, {5e-3, 1e-3}, {5e-3, 1e-4}};
+
 std::string name(Controller controller) {
   if (controller == Controller::kOff) return "off";
   return controller == Controller::kObserver ? "one_port" : "wave";
@@ -150,14 +156,17 @@ class Table {
       cells(of.name, controller,
             [&](double stiffness) { return cell.makeTouched(stiffness, TeleoperationLoop::kPressedForce); });
     }
-    const WaysOfNeedle ways = driveRandomWays(cell, kWays, 1);
-    const bool passive = ways.least_energy >= -kRounding * ways.largest_given;
-    std::fprintf(
-        stderr,
-        "%s: onset at %.2f um, %.3f uN; %d ways of a needle, %d make a hole, %.3g J given at the most, %.2g J at "
-        "the least: %s\n",
-        of.name, 1e6 * cell.onset().depth, 1e6 * cell.onset().force, ways.ways, ways.pierced, ways.largest_given,
-        ways.least_energy, passive ? "passive" : "not passive");
+    for (const DrivenNeedle& needle : kDrivenNeedles) {
+      const WaysOfNeedle ways = driveRandomWays(cell, kWays, 1, needle.fastest, needle.period);
+      const bool passive = ways.least_energy >= -kRounding * ways.largest_given;
+      std::fprintf(
+          stderr,
+          "%s: onset at %.2f um, %.3f uN; %d ways of a needle to %.3g um/s, sampled each %.3g ms, %d make a hole, "
+          "%.3g J given at the most, %.2g J at the least: %s\n",
+          of.name, 1e6 * cell.onset().depth, 1e6 * cell.onset().force, ways.ways, 1e6 * needle.fastest,
+          1e3 * needle.period, ways.pierced, ways.largest_given, ways.least_energy,
+          passive ? "passive" : "not passive");
+    }
   }
 
   /// A cell under a hand, damped and not, with and without a network.

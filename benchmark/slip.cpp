@@ -14,6 +14,7 @@
 #include "cell/contact/suction_load.h"
 #include "cell/mechanics/load_path.h"
 #include "cell/mechanics/proximal_anchor.h"
+#include "cell/mechanics/reference_element.h"
 #include "cell/mesh/swept_mesh.h"
 #include "cell/model/scene.h"
 #include "cell/model/scene_mesh.h"
@@ -25,15 +26,16 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr int kDrive = 0, kPressure = 1;  // entries of the path's translation
-constexpr double kModulus = 5e3;          // Pa
-constexpr double kPenalty = 1000;         // of the lip, in moduli over its edge's radius, as CellProblem has it
-constexpr double kOverlap = 5e-3;         // of lip and undeformed cell, over that radius
-constexpr double kAnchor = 1e-2;          // over modulus times radius
-constexpr double kStep = 0.02;            // of the drive, over the cell's radius
-constexpr double kGrip = 0.25;            // reach of the springs, over the cell's radius
-constexpr double kInside = 0.85;          // their middle below the loaded point, over its distance from the centre
-constexpr double kPlateau = 0.03;         // growth of the force, over the drive's, at which the cell slides
+constexpr int kDrive = 0, kPressure = 1, kStill = 2;  // entries of the path's translation
+constexpr double kModulus = 5e3;                      // Pa
+constexpr double kPenalty = 1000;  // of the lip, in moduli over its edge's radius, as CellProblem has it
+constexpr double kOverlap = 5e-3;  // of lip and undeformed cell, over that radius
+constexpr double kAnchor = 1e-2;   // over modulus times radius
+constexpr double kStep = 0.02;     // of the drive, over the cell's radius
+constexpr double kGrip = 0.25;     // reach of the springs, over the cell's radius
+constexpr double kInside = 0.85;   // their middle below the loaded point, over its distance from the centre
+constexpr double kPlateau = 0.03;  // growth of the force, over the drive's, at which the cell slides
+constexpr double kGrowing = 20;    // steps of the drive over which friction grows
 constexpr int kMostSteps = 80;
 
 struct HeldScene {
@@ -109,15 +111,16 @@ Eigen::Matrix<double, Dim, 1> ofMesh(const Vector3d& v) {
   }
 }
 
-/// Soft springs between the nodes about a point and the drive (m) along a direction. A patch that followed the drive
-/// rigidly could not turn with the cell.
+/// Soft springs between the nodes about a point and an entry of the path's translation (m) along a direction. A patch
+/// that followed it rigidly could not turn with the cell.
 template <int Dim>
 class Harness : public EnergyTerm {
  public:
   using Vector = Eigen::Matrix<double, Dim, 1>;
 
-  Harness(const LayeredBody<Dim>& body, const Vector& point, double reach, const Vector& direction, double stiffness)
-      : drive_(body.tipEntry() + kDrive) {
+  Harness(const LayeredBody<Dim>& body, const Vector& point, double reach, const Vector& direction, double stiffness,
+          int entry)
+      : drive_(body.tipEntry() + entry) {
     by_ << direction, -1;
     double sum = 0;
     for (int node = 0; node < static_cast<int>(body.mesh().nodes.size()); ++node) {
@@ -167,6 +170,108 @@ class Harness : public EnergyTerm {
   std::vector<double> stiffness_;  // N/m
 };
 
+/// Coulomb's friction of a cell that turns about the y axis in its seat: everywhere against the material's way, whose
+/// direction F (w x X) is known, as the form stays while the material turns through it. So no point sticks, and no node
+/// passes the lip. A traction that each equilibrium sets anew from its own contact, until it does not change.
+class SlidingSeat : public EnergyTerm {
+ public:
+  /// @param origin m, of the mouth's frame. @param penalty Pa/m, of the lip. @param growing m, way of the drive over
+  /// which friction grows to its coefficient
+  SlidingSeat(const LayeredBody<3>& body, std::shared_ptr<const PipetteMouth> mouth, const Vector3d& origin,
+              double penalty, double friction, double growing)
+      : body_(body),
+        mouth_(std::move(mouth)),
+        origin_(origin),
+        penalty_(penalty),
+        friction_(friction),
+        growing_(growing) {
+    const double reach = 2 * mouth_->edgeRadius();
+    for (const QuadraticMesh<3>::Facet& facet : body.mesh().facets) {
+      const double away = mouth_->distance(body.mesh().nodes[facet.nodes[0]] - origin_);
+      if (away > reach) continue;
+      facets_.push_back(facet);
+      entries_.emplace_back();
+      for (const int node : facet.nodes) {
+        for (int k = 0; k < 3; ++k) entries_.back().push_back(3 * node + k);
+      }
+    }
+    reset();
+  }
+
+  int elementCount() const override { return static_cast<int>(entries_.size()); }
+  const std::vector<int>& entries(int facet) const override { return entries_[facet]; }
+  /// N m, about the y axis, that friction bore at the last equilibrium, by its power.
+  double moment() const { return moment_; }
+  bool evaluate(int facet, const VectorXd& state, Order order, LocalEnergy& result) const override {
+    const VectorXd& force = forces_[facet];
+    result.zero = force.isZero(0);
+    result.energy = -force.dot(VectorXd(state(entries_[facet])));
+    if (order != Order::kEnergy) result.gradient = -force;
+    if (order == Order::kHessian) result.hessian = Eigen::MatrixXd::Zero(force.size(), force.size());
+    return true;
+  }
+  bool beginStep(double /*duration*/) override {
+    forces_ = accepted_;
+    return false;
+  }
+  bool settle(const VectorXd& state) override {
+    double change = 0, sum = 0;
+    moment_ = 0;
+    for (int facet = 0; facet < elementCount(); ++facet) {
+      const VectorXd now = forceOf(facet, state);
+      change += (now - forces_[facet]).squaredNorm();
+      sum += now.squaredNorm();
+      forces_[facet] = now;
+    }
+    return change > kSettled * kSettled * sum;
+  }
+  void accept(const VectorXd& /*state*/) override { accepted_ = forces_; }
+  void reset() override {
+    forces_.clear();
+    for (const std::vector<int>& each : entries_) forces_.emplace_back(VectorXd::Zero(each.size()));
+    accepted_ = forces_;
+  }
+
+ private:
+  static constexpr double kSettled = 1e-3;  // change of the tractions, over themselves
+  static constexpr int kNodes = QuadraticMesh<3>::kFacetNodes;
+
+  VectorXd forceOf(int facet, const VectorXd& state) {
+    VectorXd result = VectorXd::Zero(3 * kNodes);
+    for (const ReferenceElement::Point& at : referenceFacet<3>().points) {
+      Vector3d undeformed = Vector3d::Zero(), deformed = Vector3d::Zero();
+      Eigen::Matrix<double, 3, 2> before = Eigen::Matrix<double, 3, 2>::Zero(), now = before;  // tangents
+      for (int a = 0; a < kNodes; ++a) {
+        const Vector3d& x = body_.mesh().nodes[facets_[facet].nodes[a]];
+        const Vector3d u = state.segment<3>(entries_[facet][3 * a]);
+        undeformed += at.shape[a] * x;
+        deformed += at.shape[a] * (x + u);
+        before += x * at.gradient.row(a);
+        now += (x + u) * at.gradient.row(a);
+      }
+      const Gap gap = mouth_->gap(deformed - origin_);
+      if (gap.distance >= 0) continue;
+      const Vector3d turn = Vector3d::UnitY().cross(undeformed);
+      Vector3d way = now * (before.transpose() * before).ldlt().solve(before.transpose() * turn);
+      way -= way.dot(gap.normal) * gap.normal;
+      const double friction = friction_ * std::min(1.0, state[body_.tipEntry() + kDrive] / growing_);
+      const Vector3d traction = friction * penalty_ * gap.distance * way.normalized();  // distance < 0: against it
+      const double area = at.weight * before.col(0).cross(before.col(1)).norm();
+      for (int a = 0; a < kNodes; ++a) result.segment<3>(3 * a) += at.shape[a] * area * traction;
+      moment_ -= area * traction.dot(way);
+    }
+    return result;
+  }
+
+  const LayeredBody<3>& body_;
+  std::shared_ptr<const PipetteMouth> mouth_;
+  Vector3d origin_;
+  double penalty_, friction_, growing_, moment_ = 0;
+  std::vector<QuadraticMesh<3>::Facet> facets_;
+  std::vector<std::vector<int>> entries_;
+  std::vector<VectorXd> forces_, accepted_;  // N, on each facet's nodes
+};
+
 /// Mean of sqrt(a^2 cos^2 + b^2 sin^2) over a circle.
 double meanLength(double a, double b) {
   constexpr int kPoints = 64;  // exact to rounding: the integrand is periodic
@@ -179,10 +284,18 @@ double meanLength(double a, double b) {
 }
 
 /// A held cell that a drive loads more and more by soft springs, so that the load follows the cell when it gives way.
+///
+/// Friction of the lip is that of its contact, which sticks and slides. Or the cell turns in its seat all the time
+/// (SlidingSeat), while further springs at the pole, across the tube, hold it. It begins to turn where the load's
+/// moment is that of friction, by the power of both as the material turns: the form's energy does not change. The
+/// springs bear the moment that is missing until then, and what elements catch on the lip.
 template <int Dim>
 class LoadedCell {
  public:
-  LoadedCell(const HeldScene& held, const HeldLoad& load, double level, int segments)
+  enum class Friction { kOfContact, kTurning };
+
+  LoadedCell(const HeldScene& held, const HeldLoad& load, double level, int segments,
+             Friction friction = Friction::kOfContact)
       : radius_(held.radius), stiffness_(2 * load.largest(held.rigid(load.friction), load.point) / held.radius) {
     const Scene scene = sceneOf(held, load.friction);
     body_ = std::make_shared<LayeredBody<Dim>>(heldMesh<Dim>(scene, level, segments), ElementKind::kP2P0,
@@ -190,7 +303,7 @@ class LoadedCell {
     const auto mouth = std::make_shared<PipetteMouth>(held.mouth(-1));
     RigidContactConfig config;
     config.mode = RigidContactConfig::Mode::kSliding;
-    config.friction = load.friction;
+    config.friction = friction == Friction::kOfContact ? load.friction : 0;
     config.penalty = kPenalty * kModulus / held.edge;
     config.moves = {false, false, false};
     config.origin.z() = kOverlap * held.edge - mouth->touchDistance(radius_);
@@ -198,15 +311,24 @@ class LoadedCell {
     suction_ = std::make_shared<SuctionLoad<Dim>>(*body_, *mouth, radius_, config.origin.z(), lip_,
                                                   body_->tipEntry() + kPressure, kModulus / radius_);
     harness_ = std::make_shared<Harness<Dim>>(*body_, ofMesh<Dim>(kInside * load.point), kGrip * radius_,
-                                              ofMesh<Dim>(load.direction), stiffness_ / kWhole);
+                                              ofMesh<Dim>(load.direction), stiffness_ / kWhole, kDrive);
     const int nodes = static_cast<int>(body_->mesh().nodes.size());
     std::vector<std::vector<int>> entries(nodes);
     for (int i = 0; i < Dim * nodes; ++i) entries[i / Dim].push_back(i);
     const auto anchor = std::make_shared<ProximalAnchor>(entries, std::vector<double>(nodes, 1.0 / nodes),
                                                          kAnchor * kModulus * radius_);
+    EquilibriumSystem::Terms terms{body_, lip_, suction_, harness_, anchor};
+    if constexpr (Dim == 3) {
+      if (friction == Friction::kTurning) {
+        seat_ = std::make_shared<SlidingSeat>(*body_, mouth, config.origin, config.penalty, load.friction,
+                                              kGrowing * kStep * radius_);
+        terms.push_back(seat_);
+        terms.push_back(std::make_shared<Harness<3>>(*body_, Vector3d(0, 0, kInside * radius_), kGrip * radius_,
+                                                     Vector3d::UnitX(), kStiller * stiffness_ / kWhole, kStill));
+      }
+    }
     system_ = std::make_unique<EquilibriumSystem>(
-        EquilibriumSystem::Terms{body_, lip_, suction_, harness_, anchor}, constraints(),
-        Dim == 3 ? SymmetricSolver::Method::kSupernodal : SymmetricSolver::Method::kSimplicial);
+        terms, constraints(), Dim == 3 ? SymmetricSolver::Method::kSupernodal : SymmetricSolver::Method::kSimplicial);
     LoadPathConfig path;
     path.length = 2 * radius_;
     path.first_step = path.largest_step = kStep * radius_;
@@ -226,9 +348,14 @@ class LoadedCell {
   /// N, that a step of the drive adds where the cell does not yield.
   double forceOfStep() const { return stiffness_ * kStep * radius_; }
 
-  void drive() {
+  /// N m, of the load about the cell's centre less that of friction: the cell turns where it is above 0.
+  double turningMoment() const { return seat_ ? force() * (loaded()[0] - middle()) - kWhole * seat_->moment() : NAN; }
+  /// N, that the further springs bear.
+  double stillForce() const { return kWhole * -path_->reaction()[kStill]; }
+
+  void drive(double step = kStep) {
     Vector3d target = path_->translation();
-    target[kDrive] += kStep * radius_;
+    target[kDrive] += step * radius_;
     result_ = path_->advance(target);
   }
 
@@ -283,13 +410,34 @@ class LoadedCell {
  private:
   static constexpr double kWhole = Dim == 3 ? 2 : 1;  // of the cell, half of which is solved in space
   static constexpr int kParts = 8;
+  static constexpr double kStiller = 20;  // springs that hold what is not in balance, over those of the load
+
+  /// m, x of the deformed body's centroid.
+  double middle() const {
+    double volume = 0, sum = 0;
+    for (const auto& element : body_->mesh().elements) {
+      Eigen::Matrix<double, Dim, Dim> edges;
+      double middle = 0;
+      const auto deformed = [&](int corner) {
+        return Eigen::Matrix<double, Dim, 1>(body_->mesh().nodes[element[corner]] +
+                                             path_->state().template segment<Dim>(Dim * element[corner]));
+      };
+      for (int corner = 0; corner <= Dim; ++corner) {
+        middle += deformed(corner)[0] / (Dim + 1);
+        if (corner > 0) edges.col(corner - 1) = deformed(corner) - deformed(0);
+      }
+      volume += edges.determinant();
+      sum += edges.determinant() * middle;
+    }
+    return sum / volume;
+  }
 
   Constraints constraints() const {
     Constraints result;
     result.entries.assign(body_->stateSize(), Constraints::kFree);
     std::fill_n(result.entries.end() - 3 - body_->pressureCount(), body_->pressureCount(), Constraints::kInternal);
     for (int k = 0; k < 2; ++k) result.entries[body_->tipEntry() + k] = Constraints::tip(k);
-    result.entries.back() = Constraints::kFixed;
+    result.entries.back() = seat_ ? Constraints::tip(kStill) : Constraints::kFixed;
     constexpr int kAcross = Dim == 3 ? 1 : 0;  // of the plane of symmetry, of the axis
     for (std::size_t node = 0; node < body_->mesh().nodes.size(); ++node) {
       if (body_->mesh().nodes[node][kAcross] == 0) result.entries[Dim * node + kAcross] = Constraints::kFixed;
@@ -302,6 +450,7 @@ class LoadedCell {
   std::shared_ptr<RigidContact<Dim>> lip_;
   std::shared_ptr<SuctionLoad<Dim>> suction_;
   std::shared_ptr<Harness<Dim>> harness_;
+  std::shared_ptr<SlidingSeat> seat_;
   std::unique_ptr<EquilibriumSystem> system_;
   std::unique_ptr<LoadPath> path_;
   LoadPath::Result result_;
@@ -344,8 +493,33 @@ class SlipTable {
     if (found.end.empty()) found.end = "still held";
     found.limit = load.largest(held.soft(load.friction), at);
     found.rigid = load.largest(held.rigid(load.friction), at);
-    if (load.friction == 0) found.motion = comesOff(held, load);
+    if (load.friction == 0) found.motion = comesOff(held, load, at);
     write(held, load, at, found, cell.unknowns());
+  }
+
+  /// The load at which a cell that turns in its seat is in balance. Friction grows over the first steps.
+  void addTurned(const HeldScene& held, const HeldLoad& load) {
+    LoadedCell<3> cell(held, load, level_, segments_, LoadedCell<3>::Friction::kTurning);
+    Limit found;
+    found.end = cell.inEquilibrium() ? "" : "not held: " + cell.reason();
+    Vector3d at = load.point;
+    for (int i = 1; i < kMostSteps && found.end.empty(); ++i) {
+      const double force = cell.force(), moment = cell.turningMoment();
+      const Vector3d before = cell.loaded();
+      cell.drive();
+      if (verbose_) tell(cell);
+      if (!cell.inEquilibrium()) found.end = "lost: " + cell.reason();
+      if (i <= kGrowing || cell.turningMoment() < 0) continue;
+      const double share = moment / (moment - cell.turningMoment());
+      found.solved = force + share * (cell.force() - force);
+      at = before + share * (Vector3d(cell.loaded()) - before);
+      found.end = "slides";
+    }
+    if (found.end.empty()) found.end = "still held";
+    found.limit = load.largest(held.soft(load.friction), at);
+    found.rigid = load.largest(held.rigid(load.friction), at);
+    found.motion = comesOff(held, load, at);
+    write(held, {"turned", load.point, load.direction, load.friction}, at, found, cell.unknowns());
   }
 
   /// As a push across the tube at the pole, of which the moment is that times the radius.
@@ -362,7 +536,7 @@ class SlipTable {
   const std::string& text() const { return table_.text(); }
 
  private:
-  static constexpr double kFiner = 1;  // level of a section's mesh above that in space
+  static constexpr double kFiner = 2.5;  // level of a section's mesh above that in space
 
   struct Limit {
     double solved = 0, opens = NAN;             // N, of the solved cell: the largest; a part of the lip is free
@@ -370,8 +544,9 @@ class SlipTable {
     std::string end{};
   };
 
-  /// N, of a load that grows in steps of 0.5 % of the rigid sphere's limit.
-  static double comesOff(const HeldScene& held, const HeldLoad& load) {
+  /// N, of a load that grows in steps of 0.5 % of the rigid sphere's limit: the cell comes off or, with friction,
+  /// slips.
+  static double comesOff(const HeldScene& held, const HeldLoad& load, const Vector3d& at) {
     CellMotionConfig config = held.motion(load.friction);
     config.dish_height = -1;
     config.density_difference = 0;
@@ -380,12 +555,17 @@ class SlipTable {
     CellMotionInput input;  // z points into the pipette
     input.pressure = -held.suction * kModulus;
     motion.place({0, 0, -mouth.touchDistance(held.radius)}, Eigen::Quaterniond::Identity(), input);
-    const double expected = load.largest(held.rigid(load.friction), load.point);
+    const double expected = load.largest(held.rigid(load.friction), at);
+    const Vector3d mirrored(1, 1, -1), start = motion.state().position;
     for (double share = 0.3; share < 1.5; share += 0.005) {
-      input.force = share * expected * load.direction.cwiseProduct(Vector3d(1, 1, -1));
-      for (int i = 0; i < 100; ++i) motion.step(1e-3, input);
+      input.force = share * expected * load.direction.cwiseProduct(mirrored);
+      for (int i = 0; i < 100; ++i) {
+        const Vector3d arm = at.cwiseProduct(mirrored) - (motion.state().position - start);
+        input.torque = arm.cross(input.force);
+        motion.step(1e-3, input);
+      }
       const CellMode mode = motion.state().mode;
-      if (mode != CellMode::kHeld && mode != CellMode::kSlipping) return share * expected;
+      if (mode != CellMode::kHeld && (load.friction > 0 || mode != CellMode::kSlipping)) return share * expected;
     }
     return NAN;
   }
@@ -404,8 +584,9 @@ class SlipTable {
   template <int Dim>
   static void tell(const LoadedCell<Dim>& cell) {
     const auto at = cell.loaded();
-    std::fprintf(stderr, "  %.4g nN at (%.3g, %.3g) um, lip %.2g, seal %.4g um\n", 1e9 * cell.force(), 1e6 * at[0],
-                 1e6 * at[Dim - 1], cell.pressedShare(), 1e6 * cell.sealRadius());
+    std::fprintf(stderr, "  %.4g nN at (%.3g, %.3g) um, lip %.2g, seal %.4g um, turned by %.4g nN um, still %.4g nN\n",
+                 1e9 * cell.force(), 1e6 * at[0], 1e6 * at[Dim - 1], cell.pressedShare(), 1e6 * cell.sealRadius(),
+                 1e15 * cell.turningMoment(), 1e9 * cell.stillForce());
   }
 
   PrintedTable table_;
@@ -437,12 +618,14 @@ int main(int argc, char** argv) {
   more.add_options()("friction", po::value(&friction)->default_value(friction), "of the lip, under a needle");
   more.add_options()("scenes", po::value(&scenes)->default_value(scenes), "letters");
   more.add_options()("loads", po::value(&loads)->default_value(loads),
-                     "turn, pull (in a section), push, needle (in space)");
+                     "turn, pull (in a section), push, needle, turned (in space)");
   more.add_options()("verbose", po::bool_switch(&verbose), "the way to each limit, too");
   return benchMain(
       argc, argv, "slip: what suction bears of a soft cell, solved in space, against HoldLimits",
       [&] {
-        const auto asked = [&](const char* load) { return loads.find(load) != std::string::npos; };
+        const auto asked = [&](const std::string& load) {
+          return ("," + loads + ",").find("," + load + ",") != std::string::npos;
+        };
         SlipTable table(level, segments, verbose);
         for (const HeldScene& held : kHeldScenes) {
           if (scenes.find(held.name) == std::string::npos) continue;
@@ -450,6 +633,7 @@ int main(int argc, char** argv) {
           if (asked("pull")) table.add<2>(held, pull());
           if (asked("push")) table.add<3>(held, push());
           for (const double beside : {0.4, 0.6}) {
+            if (asked("turned")) table.addTurned(held, needle(held.radius, beside, friction));
             if (asked("needle")) table.add<3>(held, needle(held.radius, beside, friction));
           }
         }

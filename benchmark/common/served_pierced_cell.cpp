@@ -17,6 +17,8 @@ using Eigen::Vector3d;
 
 constexpr double kTimeStep = 1e-3;     // s
 constexpr double kShareAtOnset = 0.8;  // of the loop's force and depth
+constexpr double kStrokes = 0.1;       // s, between two
+constexpr double kRise = 50e-6;        // s, of a stroke
 
 Scene sceneOf(const PiercedCase& of) {
   Scene scene = loadScene(MICROINJECTION_SOURCE_DIR "/config/cells/mouse_oocyte_tough.yaml");
@@ -38,34 +40,41 @@ TipForce validForce(PuncturableCell& cell, const Vector3d& tip, double time) {
   return force;
 }
 
+/// A stroke in the step that ends at `time`, after one of `period`.
+void strikeWhenDue(PuncturableCell& cell, double stroke, double time, double period) {
+  if (stroke > 0 && std::floor(time / kStrokes) > std::floor((time - period) / kStrokes)) cell.strike({stroke, kRise});
+}
+
 /// A needle and the energy that it has given.
 struct WayInCell {
   PuncturableCell* cell;
   WaysOfNeedle* result;
+  double period, stroke;                                      // s, m
   Vector3d tip = Vector3d::Zero(), force = Vector3d::Zero();  // m, N
   double time = 0, given = 0;                                 // s, J
 
   void moveTo(const Vector3d& goal, double speed) {
-    const int steps = std::max(1, static_cast<int>(std::lround((goal - tip).norm() / (speed * kTimeStep))));
+    const int steps = std::max(1, static_cast<int>(std::lround((goal - tip).norm() / (speed * period))));
     const Vector3d move = (goal - tip) / steps;
     for (int i = 0; i < steps; ++i) {
       const Vector3d before = force;
       tip += move;
-      force = validForce(*cell, tip, time += kTimeStep).force;
+      strikeWhenDue(*cell, stroke, time + period, period);
+      force = validForce(*cell, tip, time += period).force;
       given -= 0.5 * (before + force).dot(move);
       result->least_energy = std::min(result->least_energy, given);
       result->largest_given = std::max(result->largest_given, given);
     }
   }
   void rest(double duration) {
-    for (int i = 0; i < std::lround(duration / kTimeStep); ++i) force = validForce(*cell, tip, time += kTimeStep).force;
+    for (int i = 0; i < std::lround(duration / period); ++i) force = validForce(*cell, tip, time += period).force;
   }
 };
 
 }  // namespace
 
 ServedPiercedCell::ServedPiercedCell(const PiercedCase& of)
-    : scene_(sceneOf(of)), branch_(storedPiercedBranch(scene_)) {
+    : scene_(sceneOf(of)), branch_(storedPiercedBranch(scene_)), stroke_(of.stroke) {
   std::string refusal;
   const auto member = findFamilyCell(MICROINJECTION_SOURCE_DIR "/config/families", scene_, refusal);
   if (!member) throw std::runtime_error("no family has the pierced cell: " + refusal);
@@ -82,12 +91,15 @@ TeleoperationLoop::Touched ServedPiercedCell::makeTouched(double stiffness, doub
   const double scale = onset_.depth / (kShareAtOnset * pressed / stiffness);
   const double gain = kShareAtOnset * pressed / onset_.force;
   const std::shared_ptr<PuncturableCell> cell = make();
-  return [cell, scale, gain, radius = radius(), time = 0.0](double needle) mutable {
-    return gain * validForce(*cell, {0, 0, radius + scale * needle}, time += kTimeStep).force.z();
+  return [cell, scale, gain, radius = radius(), stroke = stroke_, time = 0.0](double needle) mutable {
+    time += kTimeStep;
+    strikeWhenDue(*cell, stroke, time, kTimeStep);
+    const TipForce force = cell->step({0, 0, radius + scale * needle}, Vector3d::UnitZ(), time);
+    return force.valid ? gain * force.force.z() : 0;
   };
 }
 
-WaysOfNeedle driveRandomWays(const ServedPiercedCell& served, int ways, unsigned seed) {
+WaysOfNeedle driveRandomWays(const ServedPiercedCell& served, int ways, unsigned seed, double fastest, double period) {
   constexpr double kAbove = 1e-6, kDeepest = 3;  // m, of the onset's depth
   std::mt19937 random(seed);
   const auto between = [&](double low, double high) {
@@ -99,7 +111,7 @@ WaysOfNeedle driveRandomWays(const ServedPiercedCell& served, int ways, unsigned
   for (int i = 0; i < ways; ++i) {
     const bool first = i % 2 == 0;
     if (first) cell = served.make();
-    way = {cell.get(), &result};
+    way = {cell.get(), &result, period, served.stroke()};
     if (!first) way.time = 1e3;
     const auto beside = [&] { return between(-1, 1) * served.tipRadius(); };
     double x = beside();
@@ -109,7 +121,7 @@ WaysOfNeedle driveRandomWays(const ServedPiercedCell& served, int ways, unsigned
     for (int leg = std::uniform_int_distribution<int>(2, 8)(random); leg >= 0; --leg) {
       const double depth = leg == 0 ? -kAbove : between(0, kDeepest) * served.onset().depth;
       if (way.cell->insertion().inside && leg > 0) x = beside();
-      way.moveTo({x, 0, served.radius() - depth}, std::pow(10, between(-6, -3.5)));
+      way.moveTo({x, 0, served.radius() - depth}, fastest * std::pow(10, between(-2.5, 0)));
       way.rest(between(0, 1) < 0.3 ? between(0, 0.02) : 0);
     }
     way.rest(0.1);

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "benchmark/common/teleoperation_loop.h"
+#include "cell/model/piezo_stroke.h"
 #include "cell/model/puncturable_cell.h"
 #include "cell/surrogate/surrogate_data.h"
 
@@ -15,6 +16,7 @@ struct PiercedCase {
   double toughness;    ///< J/m^2
   double coefficient;  ///< of friction, of the wall on the shaft
   double barrier;      ///< J
+  double stroke = 0;   ///< m, of a piezo that strikes ten times a second, within 50 us
 };
 
 inline constexpr PiercedCase kPiercedCases[] = {
@@ -26,8 +28,8 @@ inline constexpr PiercedCase kPiercedCases[] = {
     {"pierced_barrier", 0.018, 0.05, 5e-13},  // a third of the crack's energy at the onset
     {"pierced_soft", 0.0037, 0.05, 0},        // a hole of 0.89 of the tip's radius; the limit is 0.9
     {"pierced_tough", 0.062, 0.05, 0},        // of 0.15, the limit
-    {"pierced_never", 0.018, 0.05, 1}         // no depth is enough
-};
+    {"pierced_never", 0.018, 0.05, 1},        // no depth is enough
+    {"pierced_struck", 0.018, 0.05, 0, 0.5e-6}};
 
 /// Such a cell as a session serves it: the force of a family's member until the layer fails, then that of its
 /// PiercedBranch.
@@ -39,11 +41,12 @@ class ServedPiercedCell {
   std::unique_ptr<PuncturableCell> make() const;
 
   /// Whose needle breaks through where it is 0.8 times as deep as `pressed` (N) presses a spring of `stiffness` (N/m),
-  /// with that share of that force.
+  /// with that share of that force. No force where the cell has none, as the bridge renders it.
   TeleoperationLoop::Touched makeTouched(double stiffness, double pressed) const;
 
   double radius() const { return scene_.radius(); }              ///< m
   double tipRadius() const { return scene_.needle.tip.radius; }  ///< m
+  double stroke() const { return stroke_; }                      ///< m
   const PiercedBranch::Onset& onset() const { return onset_; }   ///< without a barrier for one that is never pierced
 
  private:
@@ -51,6 +54,7 @@ class ServedPiercedCell {
   std::shared_ptr<const SurrogateData> data_;
   std::optional<PiercedBranch> branch_;
   PiercedBranch::Onset onset_;
+  double stroke_;  // m
 };
 
 /// What a needle gets back that goes in and out of the cell, again and again.
@@ -60,9 +64,10 @@ struct WaysOfNeedle {
   double least_energy = 0;    ///< J, same, at the least
 };
 
-/// On random ways along the pipette, up to three onsets deep, with reversals, at 1 to 300 um/s, 1 kHz, beside the
-/// axis by up to a tip's radius and, in the hole, to the side. Each second way is through the hole of the last one, if
-/// that has made one.
-WaysOfNeedle driveRandomWays(const ServedPiercedCell& cell, int ways, unsigned seed);
+/// On random ways along the pipette, up to three onsets deep, with reversals, at 1/316 of `fastest` (m/s) to that,
+/// beside the axis by up to a tip's radius and, in the hole, to the side. Each second way is through the hole of the
+/// last one, if that has made one. The force is sampled each `period` (s), and the energy summed by the trapezoidal
+/// rule.
+WaysOfNeedle driveRandomWays(const ServedPiercedCell& cell, int ways, unsigned seed, double fastest, double period);
 
 }  // namespace microinjection

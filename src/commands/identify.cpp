@@ -172,15 +172,6 @@ std::map<std::string, std::string> columnsOf(const IdentifyArguments& arguments,
   return columns;
 }
 
-/// The force of a cell that suction holds is that of a glued one within Scene::kGluedError.
-void widen(Identification& force) {
-  for (Estimate& estimate : force.estimates) {
-    if (estimate.name != "young_modulus") continue;
-    estimate.low /= 1 + Scene::kGluedError;
-    estimate.high *= 1 + Scene::kGluedError;
-  }
-}
-
 Identification fitTongue(const IdentifyArguments& arguments, const Scene& scene) {
   const std::map<std::string, std::string> columns = columnsOf(arguments, true);
   const TongueRecord record = arguments.vision ? measureTongues(arguments.tongue, columns, *arguments.vision)
@@ -222,12 +213,13 @@ int run(int argc, char** argv) {
   for (std::size_t i = 0; i < laws.size(); ++i) {
     try {
       IdentificationConfig config = arguments.identification;
+      // The force of a cell that suction holds is that of a glued one within this.
+      if (tongue) config.calibration_error = std::hypot(config.calibration_error, Scene::kGluedError);
       if (arguments.models[i] == "family") {
         config.rivals =
             std::make_shared<const std::vector<RivalCell>>(rivalCells(loadFamilies(arguments.families), *scene));
       }
       fits.emplace_back(arguments.models[i], identify(curve, laws[i], config));
-      if (tongue) widen(fits.back().second);
       printIdentification(arguments.models[i], fits.back().second);
     } catch (const ConfigError& error) {
       std::cerr << "identify: " << arguments.record << ": " << arguments.models[i] << ": " << error.what() << '\n';

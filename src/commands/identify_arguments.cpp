@@ -202,6 +202,8 @@ std::optional<IdentifyArguments> parseIdentifyArguments(int argc, char** argv) {
   add("to", po::value(&arguments.curve.to), "last one");
   add("segment", po::value(&arguments.curve.segment), "text of the column segment that is used; default: the approach");
   add("whole", po::bool_switch(&arguments.curve.whole), "use what is no way in, too");
+  add("calibration-error", po::value(&arguments.identification.calibration_error)->default_value(0),
+      "of a record's force as a whole, relative: half of its interval of 95 %");
   add("tip-radius", po::value(&arguments.geometry.tip_radius), "m, of the tip for hertz");
   add("half-angle", po::value(&arguments.geometry.half_angle), "rad, of the cone");
   add("poisson-ratio", po::value(&poisson_ratio), "of the formulas; default that of the scene, else 0.5");
@@ -231,6 +233,10 @@ std::optional<IdentifyArguments> parseIdentifyArguments(int argc, char** argv) {
                                                                       {"spring-constant", plausible::kStiffness}};
   for (const auto& [option, range] : ranges) {
     if (values.count(option) != 0) requirePlausible(range, option, values[option].as<double>());
+  }
+  if (const double error = arguments.identification.calibration_error; error != 0) {
+    if (arguments.record.empty()) throw ConfigError("--calibration-error: needs --record");
+    requirePlausible(kReadingError, "calibration-error", error);
   }
   if (values.count("poisson-ratio") != 0 && !(poisson_ratio > -1 && poisson_ratio <= 0.5)) {
     throw ConfigError("--poisson-ratio = " + std::to_string(poisson_ratio) + ": must be in (-1, 0.5]");

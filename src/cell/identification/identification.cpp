@@ -105,17 +105,16 @@ ProfileInterval curvatureInterval(const CurveModel::Unknown& unknown, double fou
   return {std::max(low, unknown.low), std::min(high, unknown.high), low >= unknown.low, high <= unknown.high};
 }
 
-Estimate estimateOf(CurveModel& model, const CurveFit& fit, int p, double correlation, double law_error, bool profile) {
+/// @param scale of the force and the law, relative: half of its interval of 95 %
+Estimate estimateOf(CurveModel& model, const CurveFit& fit, int p, double correlation, double scale, bool profile) {
   const CurveModel::Unknown& unknown = model.unknowns()[static_cast<std::size_t>(p)];
   const double deviation = std::sqrt(correlation * fit.covariance(p, p));
   ProfileInterval interval = curvatureInterval(unknown, fit.internal[p], deviation);
   if (profile && deviation > 0) interval = profileInterval(model, fit, p, 0.5 * kChiSquared95 * correlation, deviation);
-  // What the law is off by is the modulus's, too.
+  // What law and sensor are off by is the modulus's, too.
   if (unknown.name == "young_modulus") {
-    constexpr double kDeviationOfMedian = 1.4826;  // of normal values, over the median of their sizes
-    const double law = kDeviations95 * kDeviationOfMedian * law_error;
-    interval.low = fit.internal[p] - std::hypot(fit.internal[p] - interval.low, law);
-    interval.high = fit.internal[p] + std::hypot(interval.high - fit.internal[p], law);
+    interval.low = fit.internal[p] - std::hypot(fit.internal[p] - interval.low, scale);
+    interval.high = fit.internal[p] + std::hypot(interval.high - fit.internal[p], scale);
   }
   return {unknown.name,
           unknown.unit,
@@ -173,12 +172,14 @@ Identification identifyWith(const ForceCurve& curve, const std::shared_ptr<Elast
   result.model = law->description();
   result.noise = fit.noise;
   result.residuals = residualsOf(model, fit.internal);
-  const double law_error = law->error();
+  constexpr double kDeviationOfMedian = 1.4826;  // of normal values, over the median of their sizes
+  const double scale =
+      std::hypot(kDeviations95 * kDeviationOfMedian * law->error(), std::log1p(config.calibration_error));
   const double correlation = correlationLength(result.residuals.cwiseMax(-5 * fit.noise).cwiseMin(5 * fit.noise));
   result.independent = static_cast<double>(curve.size()) / correlation;
   for (std::size_t p = 0; p < model.unknowns().size(); ++p) {
     if (model.unknowns()[p].low == model.unknowns()[p].high) continue;
-    result.estimates.push_back(estimateOf(model, fit, static_cast<int>(p), correlation, law_error, config.intervals));
+    result.estimates.push_back(estimateOf(model, fit, static_cast<int>(p), correlation, scale, config.intervals));
     const Estimate& last = result.estimates.back();
     if (!last.bounded())
       result.warnings.push_back(last.name + " is open " + last.open() + ": this record does not bound it");

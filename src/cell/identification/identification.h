@@ -64,6 +64,9 @@ struct IdentificationConfig {
   Drift drift = Drift::kAuto;
   int prony_terms = 0;
   bool intervals = true;  ///< by the profile of the likelihood; else from the Hessian alone
+  /// Of the force as a whole, relative, half of its interval of 95 %: of the sensor's spring constant or gain, which no
+  /// record shows and which goes into the modulus.
+  double calibration_error = 0;
   /// m, position of the contact that is known beforehand, and its standard deviation: only for the
   /// comparison with the rivals, which would fit it elsewhere.
   double contact = 0, contact_deviation = std::numeric_limits<double>::infinity();

@@ -85,8 +85,9 @@ HoldLimits CellMotion::limits(double pressure, double notch_area) const {
   if (!mouth_ || suction_->swallows()) return HoldLimits(0, 0, config_.radius, 0);
   const double closed = suction_->share(0, suction_->notchConductance(notch_area));
   const double suction = closed * std::max(-pressure, 0.0);
+  if (suction <= 0) return HoldLimits(0, suction_->sealRadius(), config_.radius, config_.friction.lip);
   return HoldLimits(suction * suction_->area(), suction_->sealRadius(), config_.radius, config_.friction.lip,
-                    suction_->releasedRadius(suction));
+                    {suction_->releasedRadius(suction), suction_->lateralStiffness(suction)});
 }
 
 const char* CellMotion::refusal(const CellMotionInput& input) const {

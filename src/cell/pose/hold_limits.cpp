@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <boost/math/special_functions/ellint_1.hpp>
 #include <boost/math/special_functions/ellint_2.hpp>
 #include <cmath>
 #include <limits>
@@ -15,20 +16,39 @@ double cosineOf(double circle, double sphere) { return std::sqrt(std::max(1 - st
 }  // namespace
 
 HoldLimits::HoldLimits(double suction, double seal_radius, double radius, double friction)
-    : HoldLimits(suction, seal_radius, radius, friction, seal_radius) {}
+    : HoldLimits(suction, seal_radius, radius, friction, {seal_radius, std::numeric_limits<double>::infinity()}) {}
 
-HoldLimits::HoldLimits(double suction, double seal_radius, double radius, double friction, double released_radius)
-    : suction_(suction), seal_(seal_radius), radius_(radius), friction_(friction), released_(released_radius) {}
+HoldLimits::HoldLimits(double suction, double seal_radius, double radius, double friction, const SoftSeat& seat)
+    : suction_(suction), seal_(seal_radius), radius_(radius), friction_(friction), seat_(seat) {}
 
-double HoldLimits::pull() const { return seal_ > 0 ? suction_ * std::pow(released_ / seal_, 2) : 0; }
+double HoldLimits::pull() const { return seal_ > 0 ? suction_ * std::pow(seat_.released_radius / seal_, 2) : 0; }
 
 double HoldLimits::opening() const { return sideways() / 2; }
 
-double HoldLimits::sideways() const { return pull() * released_ / (radius_ * cosineOf(released_, radius_)); }
+double HoldLimits::sideways() const {
+  return pull() * seat_.released_radius / (radius_ * cosineOf(seat_.released_radius, radius_));
+}
 
 double HoldLimits::turning() const {
   const double push = suction_ / cosineOf(seal_, radius_);
   return friction_ * push * radius_ * M_2_PI * boost::math::ellint_2(seal_ / radius_);
+}
+
+/// Of the load f with the arm m (m) about the centre and the component a = `along` out of the pipette,
+///
+///     f m = M (1 - a h f / stiffness),   M = k (F - a f)
+///
+/// the smallest f > 0; infinite without one. The shift M h / stiffness is left out under a load that pulls.
+double HoldLimits::turningLoad(double arm, double along) const {
+  const double cosine = cosineOf(seal_, radius_), sine = seal_ / radius_;
+  const double mean = M_2_PI * boost::math::ellint_2(sine), inverse = M_2_PI * boost::math::ellint_1(sine);
+  const double k = turning() / suction_;
+  const double lateral = along < 0 ? cosine * inverse / (radius_ * mean) / seat_.lateral_stiffness : 0;
+  // (along^2 lateral k) f^2 - (arm + along (lateral k F + k)) f + k F = 0
+  const double square = along * along * lateral * k, line = arm + along * (lateral * turning() + k);
+  const double root = line * line - 4 * square * turning();
+  if (line <= 0 || root < 0) return std::numeric_limits<double>::infinity();
+  return 2 * turning() / (line + std::sqrt(root));
 }
 
 double HoldLimits::spinning() const { return friction_ * suction_ / cosineOf(seal_, radius_) * seal_; }
@@ -46,11 +66,11 @@ double HoldLimits::largest(const Eigen::Vector3d& point, const Eigen::Vector3d& 
   };
   limit(pull(), 1, 0);
   if (suction_ <= 0) return 0;
-  limit(suction_, turning() / suction_, moment.head<2>().norm());
+  largest = std::min(largest, turningLoad(moment.head<2>().norm(), along));
   limit(suction_, spinning() / suction_, std::abs(moment.z()));
   // About the point of the circle over which the force tips the sphere.
-  const double height = radius_ * cosineOf(released_, radius_);
-  limit(pull(), released_, (moment - height * z.cross(d)).head<2>().norm());
+  const double height = radius_ * cosineOf(seat_.released_radius, radius_);
+  limit(pull(), seat_.released_radius, (moment - height * z.cross(d)).head<2>().norm());
   return largest;
 }
 

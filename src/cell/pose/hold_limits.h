@@ -20,7 +20,16 @@ namespace microinjection {
 ///
 /// A soft cell bulges into the bore, so that it leaves the lip at a circle nearer to the bore, of the radius r < s
 /// (LipSuction::releasedRadius). Pulling off and tipping are about that circle: s becomes r in their limits, and F
-/// becomes p pi r^2. It turns while it is pressed, about the circle s. `./dev bench slip` compares with solved cells.
+/// becomes p pi r^2. It turns while it is pressed, about the circle s. Meanwhile friction pushes it across the tube,
+/// against the way of its material at the lip, by M h of the moment M, h = cos(alpha) <1/g> / (R <g>), g the speed
+/// above over that of the material and < > the mean over the circle. Its centre follows by M h over the lateral
+/// stiffness of the seat, under the needle, whose arm m about the centre becomes shorter. So with k = M / N_z, N_z the
+/// axial push,
+///
+///     f (m - M h / stiffness) = M = k (F + f)        f: load along the tube, into the pipette
+///
+/// is quadratic in f, and has no solution where the seat wedges: such a needle never turns the cell. `./dev bench slip`
+/// compares with solved cells.
 ///
 /// Each limit is exact when the others are far; friction that already bears a moment in one direction bears less in
 /// another.
@@ -29,8 +38,12 @@ class HoldLimits {
   /// A rigid sphere. @param suction N, F >= 0. @param seal_radius m, s, below @param radius m, the sphere's. @param
   /// friction mu
   HoldLimits(double suction, double seal_radius, double radius, double friction);
-  /// A soft one. @param released_radius m, r, above 0 and at most s
-  HoldLimits(double suction, double seal_radius, double radius, double friction, double released_radius);
+  struct SoftSeat {
+    double released_radius;    ///< m, r, above 0 and at most s
+    double lateral_stiffness;  ///< N/m, > 0, of a shift across the tube; infinite: the cell stays
+  };
+  /// A soft one.
+  HoldLimits(double suction, double seal_radius, double radius, double friction, const SoftSeat& seat);
 
   double suction() const { return suction_; }  ///< N, F
   double pull() const;                         ///< N, along the tube: the cell comes off
@@ -48,7 +61,10 @@ class HoldLimits {
   double largest(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) const;
 
  private:
-  double suction_, seal_, radius_, friction_, released_;
+  double turningLoad(double arm, double along) const;  ///< N, see largest()
+
+  double suction_, seal_, radius_, friction_;
+  SoftSeat seat_;
 };
 
 }  // namespace microinjection

@@ -48,6 +48,14 @@ class LipSuction {
   /// fitted to solved cells: their pull is met within 2 % for p of 0.02 to 0.15 E (`./dev bench slip`).
   /// @param suction Pa, >= 0
   double releasedRadius(double suction) const;
+  /// N/m, of a soft cell that suction presses on the lip, against a small shift across the tube: the push on the circle
+  /// changes as the cosine of the azimuth, and a half-space yields to a ring of such a load, of a Hertzian strip's
+  /// half-width a, by
+  ///
+  ///     (2 q / (pi E*)) (ln(8 s / a) + ln(2) + 1 / 2 - 2)     q: N/m, a^2 = 4 q0 c / (pi E*), q0 that of the suction
+  ///
+  /// (point forces, Johnson, "Contact mechanics", 1985, eq. 3.22, summed about the ring). @param suction Pa, > 0
+  double lateralStiffness(double suction) const;
   double middle() const { return middle_; }  ///< m, of the circle behind the lip's crest, along the tube
   double touch() const { return touch_; }    ///< m, of the sphere's centre from the middle at touch
 

@@ -76,7 +76,7 @@ std::shared_ptr<ElasticLaw> lawOf(const std::string& model, const std::optional<
 py::dict identifyRecord(const std::string& path, const std::optional<SceneValue>& scene, const std::string& model,
                         const std::vector<std::string>& free, const py::object& tip_radius, const std::string& drift,
                         int prony_terms, bool intervals, const py::dict& columns, const py::object& spring_constant,
-                        const std::string& segment, bool whole, const py::object& families) {
+                        const std::string& segment, bool whole, const py::object& families, double calibration_error) {
   const std::string folder =
       families.is_none() ? packageFolder() + "/config/families" : py::str(families).cast<std::string>();
   const ForceCurve curve = read(path, columns, spring_constant, segment, whole);
@@ -89,6 +89,9 @@ py::dict identifyRecord(const std::string& path, const std::optional<SceneValue>
     throw ConfigError("prony_terms = " + std::to_string(prony_terms) + ": must be from 0 to 3");
   config.prony_terms = prony_terms;
   config.intervals = intervals;
+  if (!(calibration_error >= 0 && calibration_error < 1))
+    throw ConfigError("calibration_error = " + std::to_string(calibration_error) + ": must be in [0, 1)");
+  config.calibration_error = calibration_error;
   if (model == "family" && prony_terms == 0)
     config.rivals = std::make_shared<const std::vector<RivalCell>>(rivalCells(loadFamilies(folder), scene->scene()));
   Identification found;
@@ -137,7 +140,8 @@ Identification withModulus(const std::tuple<double, double, double, bool>& told)
 void bindIdentify(py::module_& module) {
   module.def("identify_record", &identifyRecord, py::arg("path"), py::arg("scene"), py::arg("model"), py::arg("free"),
              py::arg("tip_radius"), py::arg("drift"), py::arg("prony_terms"), py::arg("intervals"), py::arg("columns"),
-             py::arg("spring_constant"), py::arg("segment"), py::arg("whole"), py::arg("families"));
+             py::arg("spring_constant"), py::arg("segment"), py::arg("whole"), py::arg("families"),
+             py::arg("calibration_error"));
   using Modulus = std::tuple<double, double, double, bool>;
   module.def(
       "combine_moduli",

@@ -113,13 +113,14 @@ class Identification:
 
 
 def identify(record, scene=None, model=None, *, free=(), tip_radius=None, drift='auto', prony_terms=0, intervals=True,
-             columns=None, spring_constant=None, segment='', whole=False, families=None):
+             columns=None, spring_constant=None, segment='', whole=False, families=None, calibration_error=0.0):
     """Finds the cell that a recorded force is of (doc/guide/your_cell.md#you-have-a-recorded-force).
 
     record: the path of a table as an instrument wrote it; a pandas frame with such columns; or a dict of arrays, such as
         {'time_s': t, 'position_um': z, 'force_nN': f}.
     scene: a Scene, a path or a name, whose sizes hold and whose modulus is searched. model: family (with a scene),
-    hertz, shell or membrane. free: ratios of the family to find, too.
+    hertz, shell or membrane. free: ratios of the family to find, too. calibration_error: of the force as a whole,
+    relative, half of its interval of 95 %.
     @returns an Identification
     @raises ConfigError where there is no contact in the record, or a column cannot be found
     """
@@ -129,7 +130,7 @@ def identify(record, scene=None, model=None, *, free=(), tip_radius=None, drift=
 
     def run(path):
         return _core.identify_record(path, scene, model, list(free), tip_radius, drift, prony_terms, intervals,
-                                     columns or {}, spring_constant, segment, whole, families)
+                                     columns or {}, spring_constant, segment, whole, families, calibration_error)
 
     if isinstance(record, (str, os.PathLike)):
         found = run(os.fspath(record))

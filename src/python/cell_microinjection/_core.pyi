@@ -96,7 +96,7 @@ def identify_tongue(pressure: ArrayLike, length: ArrayLike, scene: Scene) -> dic
 def identify_record(path: str, scene: Optional[Scene], model: str, free: Sequence[str], tip_radius: Optional[float],
                     drift: str, prony_terms: int, intervals: bool, columns: dict[str, str],
                     spring_constant: Optional[float], segment: str, whole: bool,
-                    families: Optional[str]) -> dict[str, Any]: ...
+                    families: Optional[str], calibration_error: float) -> dict[str, Any]: ...
 
 
 class Vision:

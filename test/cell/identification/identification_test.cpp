@@ -62,6 +62,21 @@ TEST(Identify, IntervalsCover) {
   EXPECT_GE(contact, 52);
 }
 
+TEST(Identify, TheModulusIsAsUncertainAsTheSensorsCalibration) {
+  const ForceCurve record = MadeUpRecord().make(*hertz());
+  IdentificationConfig config;
+  const Identification exact = identify(record, hertz(), config);
+  config.calibration_error = 0.1;
+  const Identification found = identify(record, hertz(), config);
+  const auto modulus = [](const Identification& of) { return *of.find("young_modulus"); };
+  EXPECT_EQ(modulus(found).value, modulus(exact).value);
+  const double above = std::log(modulus(exact).high / modulus(exact).value);
+  EXPECT_NEAR(std::log(modulus(found).high / modulus(found).value), std::hypot(above, std::log(1.1)), 1e-9);
+  const double below = std::log(modulus(exact).value / modulus(exact).low);
+  EXPECT_NEAR(std::log(modulus(found).value / modulus(found).low), std::hypot(below, std::log(1.1)), 1e-9);
+  EXPECT_EQ(found.find("contact")->high, exact.find("contact")->high);
+}
+
 TEST(Identify, RefusesARecordWithoutContact) {
   MadeUpRecord record;
   record.contact = 1;

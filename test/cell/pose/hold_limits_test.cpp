@@ -59,7 +59,8 @@ TEST(HoldLimits, BesideTheAxisAForceAlongTheTubeTurnsTheCell) {
 
 TEST(HoldLimits, ASoftCellComesOffAtTheCircleWhereItLeavesTheLip) {
   const double released = 12e-6, share = released / kSealRadius, tangent = std::tan(std::asin(released / kHeldRadius));
-  const HoldLimits soft(kSuctionForce, kSealRadius, kHeldRadius, kLipFriction, released);
+  const HoldLimits soft(kSuctionForce, kSealRadius, kHeldRadius, kLipFriction,
+                        {released, std::numeric_limits<double>::infinity()});
   const double pull = kSuctionForce * share * share;
   EXPECT_NEAR(soft.pull(), pull, 1e-20);
   EXPECT_NEAR(soft.largest(Vector3d::Zero(), {0, 0, -1}), pull, 1e-20);
@@ -67,6 +68,34 @@ TEST(HoldLimits, ASoftCellComesOffAtTheCircleWhereItLeavesTheLip) {
   EXPECT_NEAR(soft.opening(), pull * tangent / 2, 1e-20);
   EXPECT_EQ(soft.turning(), holdLimits().turning());
   EXPECT_EQ(holdLimits().pull(), kSuctionForce);
+}
+
+/// The moment of a load along the tube about a centre that friction has pushed across it, by quadrature about the lip.
+TEST(HoldLimits, ACellThatGivesWayAcrossTheTubeShortensTheArm) {
+  const double stiffness = 0.04, alpha = std::asin(kSealRadius / kHeldRadius);
+  const HoldLimits soft(kSuctionForce, kSealRadius, kHeldRadius, kLipFriction, {kSealRadius, stiffness});
+  const double beside = 30e-6;
+  const Vector3d point(beside, 0, -std::sqrt(kHeldRadius * kHeldRadius - beside * beside));
+  const double load = soft.largest(point, {0, 0, 1});
+  EXPECT_GT(load, holdLimits().largest(point, {0, 0, 1}));
+  double moment = 0, across = 0;
+  const int count = 1000;
+  for (int i = 0; i < count; ++i) {
+    const double phi = 2 * M_PI * (i + 0.5) / count;
+    const Vector3d arm =
+        kHeldRadius * Vector3d(std::sin(alpha) * std::cos(phi), std::sin(alpha) * std::sin(phi), std::cos(alpha));
+    const double friction = kLipFriction * (kSuctionForce + load) / std::cos(alpha) / count;
+    const Vector3d force = -friction * Vector3d(0, -1, 0).cross(arm).normalized();
+    moment += arm.cross(force).y();
+    across += force.x();
+  }
+  EXPECT_NEAR(load * (beside - std::abs(across) / stiffness) / std::abs(moment), 1, 1e-9);
+
+  // A softer seat wedges where a rigid one turns: only tipping over the lip is left, as with much friction.
+  const HoldLimits softer(kSuctionForce, kSealRadius, kHeldRadius, 2 * kLipFriction, {kSealRadius, stiffness / 10});
+  EXPECT_LT(holdLimits(2 * kLipFriction).largest(point, {0, 0, 1}), holdLimits(5).largest(point, {0, 0, 1}));
+  EXPECT_EQ(softer.largest(point, {0, 0, 1}), holdLimits(5).largest(point, {0, 0, 1}));
+  EXPECT_EQ(softer.largest(point, {0, 0, -1}), holdLimits(2 * kLipFriction).largest(point, {0, 0, -1}));
 }
 
 TEST(HoldLimits, WithoutSuctionHoldsNothing) {
