@@ -610,12 +610,15 @@ int main(int argc, char** argv) {
   int segments = 4;
   double friction = 0.15;
   std::string scenes = "ABCDEFGH", loads = "turn,pull,push";
+  std::vector<double> beside{0.4, 0.6};
   bool verbose = false;
   namespace po = boost::program_options;
   po::options_description more;
   more.add_options()("level", po::value(&level)->default_value(level), "of the mesh (scene_mesh.h)");
   more.add_options()("segments", po::value(&segments)->default_value(segments), "of the mesh, around half of the axis");
   more.add_options()("friction", po::value(&friction)->default_value(friction), "of the lip, under a needle");
+  more.add_options()("beside", po::value(&beside)->multitoken(),
+                     "places of a needle beside the axis, in radii; default 0.4 0.6");
   more.add_options()("scenes", po::value(&scenes)->default_value(scenes), "letters");
   more.add_options()("loads", po::value(&loads)->default_value(loads),
                      "turn, pull (in a section), push, needle, turned (in space)");
@@ -632,9 +635,9 @@ int main(int argc, char** argv) {
           if (asked("turn")) table.addTurning(held, 0.3);
           if (asked("pull")) table.add<2>(held, pull());
           if (asked("push")) table.add<3>(held, push());
-          for (const double beside : {0.4, 0.6}) {
-            if (asked("turned")) table.addTurned(held, needle(held.radius, beside, friction));
-            if (asked("needle")) table.add<3>(held, needle(held.radius, beside, friction));
+          for (const double place : beside) {
+            if (asked("turned")) table.addTurned(held, needle(held.radius, place, friction));
+            if (asked("needle")) table.add<3>(held, needle(held.radius, place, friction));
           }
         }
         return table.text();

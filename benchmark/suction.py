@@ -180,13 +180,14 @@ def joined(count, noise, seed):
         if good.sum() < 6 or not drawn['converged'].all():
             print(f'suction: cell {number}: no solution', file=sys.stderr)
             continue
-        tongue = identify_tongue(pressures, drawn['tongue_length'] + random.uniform(-2e-6, 2e-6) + random.normal(0, noise, 6), told)
+        lengths = drawn['tongue_length'] + random.uniform(-2e-6, 2e-6) + random.normal(0, noise, 6)
         height = numpy.concatenate([numpy.linspace(-8e-6, 0, 800), numpy.linspace(0, depths[good][-1], 800)])
         # The force grows nearly as depth^(3/2), so its power of 2/3 is what lines join well.
         force = numpy.interp(height, numpy.concatenate([[-1, 0], depths[good]]), numpy.concatenate([[0, 0], solved['force'][good, 2]**(2 / 3)]))**1.5
         force += random.normal(0, 10e-9, len(height))
         gain = numpy.exp(random.normal(0, CALIBRATION))
         try:
+            tongue = identify_tongue(pressures, lengths, told)
             curves = {'': identify_held(height, force, told, 0), ', calibrated to 5 %': identify_held(height, gain * force, told, 1.96 * CALIBRATION)}
         except ConfigError as error:
             print(f'suction: cell {number}: {error}', file=sys.stderr)

@@ -120,7 +120,8 @@ class Demo:
             raise DemoError(f'--cell {self._arguments.cell}: there is no file {self._scene()}')
         if self._arguments.model == 'live':
             return
-        say('the off-line stage: takes minutes the first time, for a cell of no family')
+        if not self._arguments.tried:
+            say('the off-line stage: takes minutes the first time, for a cell of no family')
         if not full_solution.prepare(self._scene()):
             if self._arguments.model == 'surrogate':
                 raise DemoError('the cell cannot be prepared, see above')

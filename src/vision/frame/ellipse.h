@@ -35,7 +35,7 @@ struct EllipseFit {
   bool valid = false;
   Ellipse ellipse;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of centre x, centre y, mean diameter, px^2
-  double residual = 0;                                   ///< px, robust standard deviation of the inliers
+  double residual = 0;                                   ///< px, root mean square of the inliers
   std::vector<bool> inlier;                              ///< of each point
 };
 
