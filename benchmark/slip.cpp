@@ -172,7 +172,7 @@ class Harness : public EnergyTerm {
 
 /// Coulomb's friction of a cell that turns about the y axis in its seat: everywhere against the material's way, whose
 /// direction F (w x X) is known, as the form stays while the material turns through it. So no point sticks, and no node
-/// passes the lip. A traction that each equilibrium sets anew from its own contact, until it does not change.
+/// passes the lip. The tractions of a step are those of the contact at the first equilibrium that it finds.
 class SlidingSeat : public EnergyTerm {
  public:
   /// @param origin m, of the mouth's frame. @param penalty Pa/m, of the lip. @param growing m, way of the drive over
@@ -187,8 +187,10 @@ class SlidingSeat : public EnergyTerm {
         growing_(growing) {
     const double reach = 2 * mouth_->edgeRadius();
     for (const QuadraticMesh<3>::Facet& facet : body.mesh().facets) {
-      const double away = mouth_->distance(body.mesh().nodes[facet.nodes[0]] - origin_);
-      if (away > reach) continue;
+      const bool near = std::any_of(facet.nodes.begin(), facet.nodes.end(), [&](int node) {
+        return mouth_->distance(body.mesh().nodes[node] - origin_) < reach;
+      });
+      if (!near) continue;
       facets_.push_back(facet);
       entries_.emplace_back();
       for (const int node : facet.nodes) {
@@ -200,7 +202,7 @@ class SlidingSeat : public EnergyTerm {
 
   int elementCount() const override { return static_cast<int>(entries_.size()); }
   const std::vector<int>& entries(int facet) const override { return entries_[facet]; }
-  /// N m, about the y axis, that friction bore at the last equilibrium, by its power.
+  /// N m, about the y axis, that friction bears at the last equilibrium, by its power as the material turns.
   double moment() const { return moment_; }
   bool evaluate(int facet, const VectorXd& state, Order order, LocalEnergy& result) const override {
     const VectorXd& force = forces_[facet];
@@ -215,17 +217,20 @@ class SlidingSeat : public EnergyTerm {
     return false;
   }
   bool settle(const VectorXd& state) override {
-    double change = 0, sum = 0;
-    moment_ = 0;
+    double change = 0, sum = 0, moment = 0;
     for (int facet = 0; facet < elementCount(); ++facet) {
-      const VectorXd now = forceOf(facet, state);
+      const VectorXd now = forceOf(facet, state, moment);
       change += (now - forces_[facet]).squaredNorm();
       sum += now.squaredNorm();
       forces_[facet] = now;
     }
     return change > kSettled * kSettled * sum;
   }
-  void accept(const VectorXd& /*state*/) override { accepted_ = forces_; }
+  void accept(const VectorXd& state) override {
+    accepted_ = forces_;
+    moment_ = 0;
+    for (int facet = 0; facet < elementCount(); ++facet) forceOf(facet, state, moment_);
+  }
   void reset() override {
     forces_.clear();
     for (const std::vector<int>& each : entries_) forces_.emplace_back(VectorXd::Zero(each.size()));
@@ -236,7 +241,8 @@ class SlidingSeat : public EnergyTerm {
   static constexpr double kSettled = 1e-3;  // change of the tractions, over themselves
   static constexpr int kNodes = QuadraticMesh<3>::kFacetNodes;
 
-  VectorXd forceOf(int facet, const VectorXd& state) {
+  /// @param moment N m, to which that of the facet's friction is added
+  VectorXd forceOf(int facet, const VectorXd& state, double& moment) const {
     VectorXd result = VectorXd::Zero(3 * kNodes);
     for (const ReferenceElement::Point& at : referenceFacet<3>().points) {
       Vector3d undeformed = Vector3d::Zero(), deformed = Vector3d::Zero();
@@ -258,7 +264,7 @@ class SlidingSeat : public EnergyTerm {
       const Vector3d traction = friction * penalty_ * gap.distance * way.normalized();  // distance < 0: against it
       const double area = at.weight * before.col(0).cross(before.col(1)).norm();
       for (int a = 0; a < kNodes; ++a) result.segment<3>(3 * a) += at.shape[a] * area * traction;
-      moment_ -= area * traction.dot(way);
+      moment -= area * traction.dot(way);
     }
     return result;
   }
@@ -287,8 +293,8 @@ double meanLength(double a, double b) {
 ///
 /// Friction of the lip is that of its contact, which sticks and slides. Or the cell turns in its seat all the time
 /// (SlidingSeat), while further springs at the pole, across the tube, hold it. It begins to turn where the load's
-/// moment is that of friction, by the power of both as the material turns: the form's energy does not change. The
-/// springs bear the moment that is missing until then, and what elements catch on the lip.
+/// moment about its centroid is that of friction: lip and suction have none, since the form's energy does not change.
+/// The springs bear the moment that is missing until then, and what elements catch on the lip.
 template <int Dim>
 class LoadedCell {
  public:
@@ -469,7 +475,7 @@ class SlipTable {
     table_.add(
         "scene,load,friction,suction_over_modulus,solved_nN,opens_nN,end,point_x_um,point_z_um,limit_nN,limit_over_"
         "solved,"
-        "rigid_nN,motion_nN,unknowns\n");
+        "rigid_nN,motion_nN,still_nN,unknowns\n");
   }
 
   template <int Dim>
@@ -499,7 +505,7 @@ class SlipTable {
 
   /// The load at which a cell that turns in its seat is in balance. Friction grows over the first steps.
   void addTurned(const HeldScene& held, const HeldLoad& load) {
-    LoadedCell<3> cell(held, load, level_, segments_, LoadedCell<3>::Friction::kTurning);
+    LoadedCell<3> cell(held, load, level_ + kFinerTurned, segments_, LoadedCell<3>::Friction::kTurning);
     Limit found;
     found.end = cell.inEquilibrium() ? "" : "not held: " + cell.reason();
     Vector3d at = load.point;
@@ -509,9 +515,12 @@ class SlipTable {
       cell.drive();
       if (verbose_) tell(cell);
       if (!cell.inEquilibrium()) found.end = "lost: " + cell.reason();
-      if (i <= kGrowing || cell.turningMoment() < 0) continue;
+      if (!found.end.empty() || i <= kGrowing || cell.turningMoment() < 0) continue;
+      if (moment > 0) found.end = "turns before all of the friction acts";
+      if (!found.end.empty()) continue;
       const double share = moment / (moment - cell.turningMoment());
       found.solved = force + share * (cell.force() - force);
+      found.still = cell.stillForce();
       at = before + share * (Vector3d(cell.loaded()) - before);
       found.end = "slides";
     }
@@ -536,11 +545,13 @@ class SlipTable {
   const std::string& text() const { return table_.text(); }
 
  private:
-  static constexpr double kFiner = 2.5;  // level of a section's mesh above that in space
+  static constexpr double kFiner = 2.5;      // level of a section's mesh above that in space
+  static constexpr double kFinerTurned = 1;  // same, of a cell that turns: on a coarser one it loses its equilibrium
 
   struct Limit {
     double solved = 0, opens = NAN;             // N, of the solved cell: the largest; a part of the lip is free
     double limit = 0, rigid = 0, motion = NAN;  // N, of HoldLimits, of a rigid sphere's, of CellMotion
+    double still = NAN;                         // N, that still holds a cell which should turn
     std::string end{};
   };
 
@@ -574,10 +585,10 @@ class SlipTable {
     std::string end = found.end;
     std::replace(end.begin(), end.end(), ',', ';');
     char row[400];
-    std::snprintf(row, sizeof row, "%s,%s,%g,%g,%.4g,%.4g,%s,%.3g,%.3g,%.4g,%.3f,%.4g,%.4g,%d\n", held.name, load.name,
-                  load.friction, held.suction, 1e9 * found.solved, 1e9 * found.opens, end.c_str(), 1e6 * at.x(),
-                  1e6 * at.z(), 1e9 * found.limit, found.limit / found.solved, 1e9 * found.rigid, 1e9 * found.motion,
-                  unknowns);
+    std::snprintf(row, sizeof row, "%s,%s,%g,%g,%.4g,%.4g,%s,%.3g,%.3g,%.4g,%.3f,%.4g,%.4g,%.2g,%d\n", held.name,
+                  load.name, load.friction, held.suction, 1e9 * found.solved, 1e9 * found.opens, end.c_str(),
+                  1e6 * at.x(), 1e6 * at.z(), 1e9 * found.limit, found.limit / found.solved, 1e9 * found.rigid,
+                  1e9 * found.motion, 1e9 * found.still, unknowns);
     table_.add(row);
   }
 

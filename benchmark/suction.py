@@ -315,10 +315,15 @@ def families(count, seed):
     yield from family_tongues('zona', count, seed)
 
 
-def program(name):
+def program(name, *options):
     """A benchmark of its own, which prints its own tables."""
-    subprocess.run([PEER.parents[2] / 'dev', 'bench', name], check=True)
+    subprocess.run([PEER.parents[2] / 'dev', 'bench', name, '--', *options], check=True)
     return ()
+
+
+def slip():
+    program('slip')
+    return program('slip', '--loads', 'turned', '--scenes', 'ACDF', '--friction', '0.1', '--beside', '0.6')
 
 
 def summary(study, rows):
@@ -363,7 +368,7 @@ def main():
                'joined': lambda: joined(arguments.cells, arguments.noise, arguments.seed),
                'breaks': lambda: breaks(arguments.trials),
                'families': lambda: families(arguments.cells, arguments.seed),
-               'hard': hard, 'slip': lambda: program('slip'), 'motion': lambda: program('cell_motion')}
+               'hard': hard, 'slip': slip, 'motion': lambda: program('cell_motion')}
     lines = []
     with (arguments.out / 'suction.csv').open('w', encoding='utf-8', newline='') as file:
         table = csv.writer(file)

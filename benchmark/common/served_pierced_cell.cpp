@@ -59,15 +59,20 @@ struct WayInCell {
     for (int i = 0; i < steps; ++i) {
       const Vector3d before = force;
       tip += move;
-      strikeWhenDue(*cell, stroke, time + period, period);
-      force = validForce(*cell, tip, time += period).force;
+      time += period;
+      strikeWhenDue(*cell, stroke, time, period);
+      force = validForce(*cell, tip, time).force;
       given -= 0.5 * (before + force).dot(move);
       result->least_energy = std::min(result->least_energy, given);
       result->largest_given = std::max(result->largest_given, given);
     }
   }
   void rest(double duration) {
-    for (int i = 0; i < std::lround(duration / period); ++i) force = validForce(*cell, tip, time += period).force;
+    for (int i = 0; i < std::lround(duration / period); ++i) {
+      time += period;
+      strikeWhenDue(*cell, stroke, time, period);
+      force = validForce(*cell, tip, time).force;
+    }
   }
 };
 

@@ -67,7 +67,7 @@ struct WaysOfNeedle {
 /// On random ways along the pipette, up to three onsets deep, with reversals, at 1/316 of `fastest` (m/s) to that,
 /// beside the axis by up to a tip's radius and, in the hole, to the side. Each second way is through the hole of the
 /// last one, if that has made one. The force is sampled each `period` (s), and the energy summed by the trapezoidal
-/// rule.
+/// rule, without the work of strokes.
 WaysOfNeedle driveRandomWays(const ServedPiercedCell& cell, int ways, unsigned seed, double fastest, double period);
 
 }  // namespace microinjection

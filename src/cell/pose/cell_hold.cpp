@@ -52,9 +52,11 @@ Eigen::Vector3d CellHold::centreInDish() const { return dishFromWorld() * state_
 /// N, that the suction bears of the model's force, in its direction.
 double CellHold::limit(const Input& input, const HoldLimits& limits) const {
   if (!input.needle || of_model_.isZero(0)) return std::numeric_limits<double>::infinity();
-  Eigen::Vector3d point = input.needle->tip - state_.offset;
+  // From the centre of a cell that nothing loads, which is on the mouth's axis: the limits know how far it yields.
+  Eigen::Vector3d point = mouthFromWorld(input.needle->tip);
+  point.z() -= mouthFromWorld(state_.offset).z();
   if (point.norm() > radius_) point *= radius_ / point.norm();
-  return limits.largest(mouthFromWorld(point), mouthFromWorld(-of_model_));
+  return limits.largest(point, mouthFromWorld(-of_model_));
 }
 
 void CellHold::enter(Regime regime) {

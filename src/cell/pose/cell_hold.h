@@ -46,7 +46,7 @@ class CellHold {
     Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  ///< of the cell, since the start
     bool sealed = false;                                              ///< the lip touches it all round
     double load = 0;                                                  ///< N, of the needle
-    double limit = 0;            ///< N, that the suction bears in the load's direction; infinite: it presses on the lip
+    double limit = 0;            ///< N, that the suction bears in the load's direction; infinite: HoldLimits::largest
     double leak = 0;             ///< m^3/s, into the mouth
     double seal_resistance = 0;  ///< Pa s/m^3, of the gap between lip and cell; infinite: closed
   };

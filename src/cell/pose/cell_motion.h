@@ -121,7 +121,7 @@ class CellMotion {
   double hertzNeedleStiffness() const { return hertz_needle_stiffness_; }
 
   /// What the mouth can hold at a pressure (Pa; only suction holds). Nothing without a mouth, or when it is wider than
-  /// the cell.
+  /// the cell. Of a soft cell, whose seat yields (LipSuction).
   HoldLimits limits(double pressure, double notch_area = 0) const;
 
  private:

@@ -34,18 +34,20 @@ double HoldLimits::turning() const {
   return friction_ * push * radius_ * M_2_PI * boost::math::ellint_2(seal_ / radius_);
 }
 
-/// Of the load f with the arm m (m) about the centre and the component a = `along` out of the pipette,
+/// Of a load with the arm m (m) about the unloaded centre and the component a = `along` out of the pipette, the
+/// smallest f > 0 with
 ///
-///     f m = M (1 - a h f / stiffness),   M = k (F - a f)
+///     f (m + a lambda M) = M,   M = (F - a f) turning / F      lambda: shift over moment, 1/N
 ///
-/// the smallest f > 0; infinite without one. The shift M h / stiffness is left out under a load that pulls.
+/// infinite without one. The load's own component across the tube is left out of the shift.
 double HoldLimits::turningLoad(double arm, double along) const {
   const double cosine = cosineOf(seal_, radius_), sine = seal_ / radius_;
   const double mean = M_2_PI * boost::math::ellint_2(sine), inverse = M_2_PI * boost::math::ellint_1(sine);
+  const double across = std::min(friction_ * cosine * inverse, sine / 2);  // N, for each of the push on the lip
+  const double lambda = friction_ > 0 ? across / (friction_ * radius_ * mean) / seat_.lateral_stiffness : 0;
   const double k = turning() / suction_;
-  const double lateral = along < 0 ? cosine * inverse / (radius_ * mean) / seat_.lateral_stiffness : 0;
-  // (along^2 lateral k) f^2 - (arm + along (lateral k F + k)) f + k F = 0
-  const double square = along * along * lateral * k, line = arm + along * (lateral * turning() + k);
+  // (along^2 lambda k) f^2 - (arm + along (lambda k F + k)) f + k F = 0
+  const double square = along * along * lambda * k, line = arm + along * (lambda * turning() + k);
   const double root = line * line - 4 * square * turning();
   if (line <= 0 || root < 0) return std::numeric_limits<double>::infinity();
   return 2 * turning() / (line + std::sqrt(root));

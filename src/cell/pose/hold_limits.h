@@ -21,15 +21,16 @@ namespace microinjection {
 /// A soft cell bulges into the bore, so that it leaves the lip at a circle nearer to the bore, of the radius r < s
 /// (LipSuction::releasedRadius). Pulling off and tipping are about that circle: s becomes r in their limits, and F
 /// becomes p pi r^2. It turns while it is pressed, about the circle s. Meanwhile friction pushes it across the tube,
-/// against the way of its material at the lip, by M h of the moment M, h = cos(alpha) <1/g> / (R <g>), g the speed
-/// above over that of the material and < > the mean over the circle. Its centre follows by M h over the lateral
-/// stiffness of the seat, under the needle, whose arm m about the centre becomes shorter. So with k = M / N_z, N_z the
-/// axial push,
+/// against the way of its material at the lip, by h M of the moment M, h = cos(alpha) <1/g> / (R <g>), g the speed
+/// above over that of the material and < > the mean over the circle. Its centre yields by h M / k, k the seat's lateral
+/// stiffness, towards a needle that presses, whose arm m about the unloaded centre becomes shorter. So
 ///
-///     f (m - M h / stiffness) = M = k (F + f)        f: load along the tube, into the pipette
+///     f (m - h M / k) = M,  M = (F + f) turning / F        f: of a load along the tube, into the pipette
 ///
-/// is quadratic in f, and has no solution where the seat wedges: such a needle never turns the cell. `./dev bench slip`
-/// compares with solved cells.
+/// is quadratic in f, and has no solution where the seat wedges: such a needle does not turn the cell. Under a load
+/// that pulls the arm becomes longer. The shift is at most that at which the push on one side of the lip vanishes, with
+/// friction above tan(alpha) / (2 <1/g>): from there on the seal opens at that side, and the seat is no longer linear.
+/// `./dev bench slip` compares with solved cells.
 ///
 /// Each limit is exact when the others are far; friction that already bears a moment in one direction bears less in
 /// another.
@@ -56,8 +57,8 @@ class HoldLimits {
   double atPole() const;
 
   /// N, the largest force of this direction (any length) at this point, m: the first limit of pulling off, tipping
-  /// over the lip, turning and spinning. Infinite when the force only presses the cell into the lip. Both in a frame at
-  /// the sphere's centre whose z points along the tube into the pipette.
+  /// over the lip, turning and spinning. Infinite when the force only presses the cell into the lip, or wedges it
+  /// there. Both in a frame at the centre of the unloaded sphere, whose z points along the tube into the pipette.
   double largest(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) const;
 
  private:

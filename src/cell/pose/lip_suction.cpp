@@ -54,10 +54,11 @@ double LipSuction::releasedRadius(double suction) const {
 }
 
 double LipSuction::lateralStiffness(double suction) const {
+  if (swallows_) return 0;
   const double sine = seal_ / radius_, cosine = std::sqrt(1 - sine * sine);
   const double line = suction * seal_ / (2 * cosine), relative = 1 / (1 / radius_ + 1 / edge_);
-  const double width = std::sqrt(4 * line * relative / (M_PI * modulus_));
-  const double yields = 2 / (M_PI * modulus_) * (std::log(16 * seal_ / width) - 1.5);  // m^2/N, of a line load
+  const double width = std::min(std::sqrt(4 * line * relative / (M_PI * modulus_)), seal_);
+  const double yields = 2 / (M_PI * modulus_) * (std::log(16 * seal_ / width) - 2);  // m^2/N, of a line load
   return M_PI * seal_ * sine * sine / yields;
 }
 

@@ -45,16 +45,17 @@ class LipSuction {
   ///     (4 / pi) (p / E*) (K(k) - E(k)),   k = s / (s + 0.17 e)
   ///
   /// K and E the complete elliptic integrals, and touches the lip where the lip is as steep. The distance 0.17 e is
-  /// fitted to solved cells: their pull is met within 2 % for p of 0.02 to 0.15 E (`./dev bench slip`).
+  /// fitted to solved cells: their pull is met within 2.4 % for p of 0.02 to 0.15 E (`./dev bench slip`).
   /// @param suction Pa, >= 0
   double releasedRadius(double suction) const;
   /// N/m, of a soft cell that suction presses on the lip, against a small shift across the tube: the push on the circle
-  /// changes as the cosine of the azimuth, and a half-space yields to a ring of such a load, of a Hertzian strip's
-  /// half-width a, by
+  /// changes by q cos(phi). What is added to a Hertzian strip's load lies on it as 1 / sqrt(a^2 - x^2), and a
+  /// half-space yields to such a ring by
   ///
-  ///     (2 q / (pi E*)) (ln(8 s / a) + ln(2) + 1 / 2 - 2)     q: N/m, a^2 = 4 q0 c / (pi E*), q0 that of the suction
+  ///     (2 q / (pi E*)) (ln(8 s / a) + ln(2) - 2)     q: N/m, a^2 = 4 q0 c / (pi E*), q0 that of the suction, a <= s
   ///
-  /// (point forces, Johnson, "Contact mechanics", 1985, eq. 3.22, summed about the ring). @param suction Pa, > 0
+  /// (point forces, Johnson, "Contact mechanics", 1985, eq. 3.22, summed about the ring). 0 for a bore that swallows.
+  /// @param suction Pa, > 0
   double lateralStiffness(double suction) const;
   double middle() const { return middle_; }  ///< m, of the circle behind the lip's crest, along the tube
   double touch() const { return touch_; }    ///< m, of the sphere's centre from the middle at touch

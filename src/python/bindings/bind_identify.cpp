@@ -89,8 +89,8 @@ py::dict identifyRecord(const std::string& path, const std::optional<SceneValue>
     throw ConfigError("prony_terms = " + std::to_string(prony_terms) + ": must be from 0 to 3");
   config.prony_terms = prony_terms;
   config.intervals = intervals;
-  if (!(calibration_error >= 0 && calibration_error < 1))
-    throw ConfigError("calibration_error = " + std::to_string(calibration_error) + ": must be in [0, 1)");
+  if (!(calibration_error >= 0 && calibration_error <= 1))
+    throw ConfigError("calibration_error = " + std::to_string(calibration_error) + ": must be in [0, 1]");
   config.calibration_error = calibration_error;
   if (model == "family" && prony_terms == 0)
     config.rivals = std::make_shared<const std::vector<RivalCell>>(rivalCells(loadFamilies(folder), scene->scene()));

@@ -120,7 +120,7 @@ def identify(record, scene=None, model=None, *, free=(), tip_radius=None, drift=
         {'time_s': t, 'position_um': z, 'force_nN': f}.
     scene: a Scene, a path or a name, whose sizes hold and whose modulus is searched. model: family (with a scene),
     hertz, shell or membrane. free: ratios of the family to find, too. calibration_error: of the force as a whole,
-    relative, half of its interval of 95 %.
+    relative, half of its interval of 95 %, 0 to 1.
     @returns an Identification
     @raises ConfigError where there is no contact in the record, or a column cannot be found
     """

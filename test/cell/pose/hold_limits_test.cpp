@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace microinjection {
 namespace {
@@ -70,32 +71,53 @@ TEST(HoldLimits, ASoftCellComesOffAtTheCircleWhereItLeavesTheLip) {
   EXPECT_EQ(holdLimits().pull(), kSuctionForce);
 }
 
-/// The moment of a load along the tube about a centre that friction has pushed across it, by quadrature about the lip.
-TEST(HoldLimits, ACellThatGivesWayAcrossTheTubeShortensTheArm) {
-  const double stiffness = 0.04, alpha = std::asin(kSealRadius / kHeldRadius);
-  const HoldLimits soft(kSuctionForce, kSealRadius, kHeldRadius, kLipFriction, {kSealRadius, stiffness});
-  const double beside = 30e-6;
-  const Vector3d point(beside, 0, -std::sqrt(kHeldRadius * kHeldRadius - beside * beside));
-  const double load = soft.largest(point, {0, 0, 1});
-  EXPECT_GT(load, holdLimits().largest(point, {0, 0, 1}));
+/// Of friction about the lip of a turning cell that is pressed by `axial` (N): moment (N m) and force across the tube
+/// (N).
+std::pair<double, double> frictionOfTurning(double axial) {
+  const double alpha = std::asin(kSealRadius / kHeldRadius);
   double moment = 0, across = 0;
   const int count = 1000;
   for (int i = 0; i < count; ++i) {
     const double phi = 2 * M_PI * (i + 0.5) / count;
     const Vector3d arm =
         kHeldRadius * Vector3d(std::sin(alpha) * std::cos(phi), std::sin(alpha) * std::sin(phi), std::cos(alpha));
-    const double friction = kLipFriction * (kSuctionForce + load) / std::cos(alpha) / count;
+    const double friction = kLipFriction * axial / std::cos(alpha) / count;
     const Vector3d force = -friction * Vector3d(0, -1, 0).cross(arm).normalized();
     moment += arm.cross(force).y();
     across += force.x();
   }
-  EXPECT_NEAR(load * (beside - std::abs(across) / stiffness) / std::abs(moment), 1, 1e-9);
+  return {std::abs(moment), std::abs(across)};
+}
+
+TEST(HoldLimits, ACellThatYieldsAcrossTheTubeChangesTheArm) {
+  const double stiffness = 0.04;
+  const HoldLimits soft(kSuctionForce, kSealRadius, kHeldRadius, kLipFriction, {kSealRadius, stiffness});
+  const double beside = 30e-6;
+  const Vector3d point(beside, 0, -std::sqrt(kHeldRadius * kHeldRadius - beside * beside));
+  const double load = soft.largest(point, {0, 0, 1});
+  EXPECT_GT(load, holdLimits().largest(point, {0, 0, 1}));
+  const auto [moment, across] = frictionOfTurning(kSuctionForce + load);
+  EXPECT_NEAR(load * (beside - across / stiffness) / moment, 1, 1e-9);
+
+  const double pull = soft.largest(point, {0, 0, -1});
+  EXPECT_LT(pull, holdLimits().largest(point, {0, 0, -1}));
+  const auto [less, towards] = frictionOfTurning(kSuctionForce - pull);
+  EXPECT_NEAR(pull * (beside + towards / stiffness) / less, 1, 1e-9);
 
   // A softer seat wedges where a rigid one turns: only tipping over the lip is left, as with much friction.
   const HoldLimits softer(kSuctionForce, kSealRadius, kHeldRadius, 2 * kLipFriction, {kSealRadius, stiffness / 10});
   EXPECT_LT(holdLimits(2 * kLipFriction).largest(point, {0, 0, 1}), holdLimits(5).largest(point, {0, 0, 1}));
   EXPECT_EQ(softer.largest(point, {0, 0, 1}), holdLimits(5).largest(point, {0, 0, 1}));
-  EXPECT_EQ(softer.largest(point, {0, 0, -1}), holdLimits(2 * kLipFriction).largest(point, {0, 0, -1}));
+}
+
+TEST(HoldLimits, TheShiftEndsWhereTheSealWouldOpen) {
+  const double tangent = kSealRadius / std::sqrt(kHeldRadius * kHeldRadius - kSealRadius * kSealRadius);
+  const double stiffness = 0.4, beside = 38e-6;
+  const Vector3d point(beside, 0, -std::sqrt(kHeldRadius * kHeldRadius - beside * beside));
+  const HoldLimits soft(kSuctionForce, kSealRadius, kHeldRadius, 0.3, {kSealRadius, stiffness});
+  const double load = soft.largest(point, {0, 0, 1}), axial = kSuctionForce + load;
+  // As one half of the axial push times the slope: HoldLimits::opening().
+  EXPECT_NEAR(load * (beside - axial * tangent / 2 / stiffness) / (soft.turning() * axial / kSuctionForce), 1, 1e-9);
 }
 
 TEST(HoldLimits, WithoutSuctionHoldsNothing) {
