@@ -317,7 +317,7 @@ def families(count, seed):
 
 def program(name, *options):
     """A benchmark of its own, which prints its own tables."""
-    subprocess.run([PEER.parents[2] / 'dev', 'bench', name, '--', *options], check=True)
+    subprocess.run([PEER.parents[2] / 'dev', 'bench', name, *(['--', *options] if options else [])], check=True)
     return ()
 
 
