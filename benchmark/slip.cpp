@@ -359,9 +359,9 @@ class LoadedCell {
   /// N, that the further springs bear.
   double stillForce() const { return kWhole * -path_->reaction()[kStill]; }
 
-  void drive(double step = kStep) {
+  void drive() {
     Vector3d target = path_->translation();
-    target[kDrive] += step * radius_;
+    target[kDrive] += kStep * radius_;
     result_ = path_->advance(target);
   }
 
@@ -515,6 +515,7 @@ class SlipTable {
       cell.drive();
       if (verbose_) tell(cell);
       if (!cell.inEquilibrium()) found.end = "lost: " + cell.reason();
+      if (i + 1 == kMostSteps) at = cell.loaded();
       if (!found.end.empty() || i <= kGrowing || cell.turningMoment() < 0) continue;
       if (moment > 0) found.end = "turns before all of the friction acts";
       if (!found.end.empty()) continue;

@@ -42,15 +42,16 @@ double HoldLimits::turning() const {
 /// infinite without one. The load's own component across the tube is left out of the shift.
 double HoldLimits::turningLoad(double arm, double along) const {
   const double cosine = cosineOf(seal_, radius_), sine = seal_ / radius_;
-  const double mean = M_2_PI * boost::math::ellint_2(sine), inverse = M_2_PI * boost::math::ellint_1(sine);
-  const double across = std::min(friction_ * cosine * inverse, sine / 2);  // N, for each of the push on the lip
-  const double lambda = friction_ > 0 ? across / (friction_ * radius_ * mean) / seat_.lateral_stiffness : 0;
-  const double k = turning() / suction_;
+  const double whole = turning(), k = whole / suction_;  // N m, of the suction alone; m
+  const double inverse = M_2_PI * boost::math::ellint_1(sine);
+  const double across =
+      suction_ / cosine * std::min(friction_ * cosine * inverse, sine / 2);  // N, of the suction alone
+  const double lambda = whole > 0 ? across / whole / seat_.lateral_stiffness : 0;
   // (along^2 lambda k) f^2 - (arm + along (lambda k F + k)) f + k F = 0
-  const double square = along * along * lambda * k, line = arm + along * (lambda * turning() + k);
-  const double root = line * line - 4 * square * turning();
+  const double square = along * along * lambda * k, line = arm + along * (lambda * whole + k);
+  const double root = line * line - 4 * square * whole;
   if (line <= 0 || root < 0) return std::numeric_limits<double>::infinity();
-  return 2 * turning() / (line + std::sqrt(root));
+  return 2 * whole / (line + std::sqrt(root));
 }
 
 double HoldLimits::spinning() const { return friction_ * suction_ / cosineOf(seal_, radius_) * seal_; }
