@@ -247,11 +247,11 @@ void piezo(PrintedTable& table, double level) {
 /// that with this force there, and the toughness that with the onset there.
 void paper(PrintedTable& table, double level) {
   constexpr double kForce = 7.5e-6, kDepth = 45e-6;
-  constexpr int kSteps = 5;
+  constexpr int kTries = 5;
   table.add(
-      "study,exponent,young_modulus,toughness,hole_radius,onset_depth,onset_force,pierced_force,force_5_um_on,steady_"
-      "force,force_out\n");
-  for (const double exponent : {6.0, 8.0}) {
+      "study,exponent,young_modulus,toughness,hole_radius,onset_depth,onset_force,pierced_force,force_3_um_on,"
+      "steady_force,force_out,seconds\n");
+  for (const double exponent : {8.0, 10.0}) {
     Scene scene = sceneOf({"paper", "ogden", exponent, 28e-6 / kTip, 10e-6 / kTip, 1});
     scene.needle.contact.mode = "sticking";
     PiercedCellConfig config;
@@ -266,33 +266,38 @@ void paper(PrintedTable& table, double level) {
     if (!whole.advance(kDepth)) throw std::runtime_error("the whole cell: " + whole.reason());
     scene.cell.material().young_modulus *= kForce / whole.force();
     const DeepPenetration deep(scene.cell.material(), 28e-6 / kTip);
-    double low = 0.3, high = 1;  // steady force over that of the puncture
-    for (int i = 0; i < kSteps; ++i) {
-      const double share = (low + high) / 2;
+    double share = 0.35, before = 0, depth_before = 0;  // steady force over that of the puncture; of the last try
+    for (int i = 0; i < kTries; ++i) {
+      const double begin = now();
       scene.cell.puncture.layers.front().toughness = kTip * deep.toughnessFor(share * kForce / (kTip * kTip));
       const SteadyPenetration steady = steadyPenetration(scene);
-      std::optional<PiercedBranch::Onset> onset;
-      double after = NAN;
-      try {
-        const PiercedBranch branch = solvePiercedBranch(scene, level);
-        onset = branch.onset();
-        if (onset) {
-          double length = onset->length, depth = onset->depth;
-          for (int k = 0; k < 20; ++k) length = branch.grown(depth += 0.25e-6, length);
-          after = branch.at(depth, length).force;
-        }
-      } catch (const ConfigError& error) {
-        std::fprintf(stderr, "puncture: exponent %g, hole of %.3g um: %s\n", exponent, 1e6 * steady.hole_radius * kTip,
-                     error.what());
+      const PiercedBranch branch = solvePiercedBranch(scene, level);
+      if (!branch.onset()) {  // so tough that its onset is beyond the solved paths
+        std::fprintf(stderr, "puncture: exponent %g, %.4g of the force: no onset on the solved paths\n", exponent,
+                     share);
+        share *= 0.93;
+        continue;
       }
+      const PiercedBranch::Onset onset = *branch.onset();
+      const auto on = [&](double further) {  // N, in steps, because the hole does not become shorter
+        double length = onset.length;
+        for (double way = 0; way <= further; way += kTip / 12) length = branch.grown(onset.depth + way, length);
+        return branch.at(onset.depth + further, length).force;
+      };
       char row[300];
-      std::snprintf(row, sizeof row, "paper,%g,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g\n", exponent,
+      std::snprintf(row, sizeof row, "paper,%g,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%.0f\n", exponent,
                     scene.cell.material().young_modulus, scene.cell.puncture.layers.front().toughness,
-                    steady.hole_radius * kTip, onset ? onset->depth : NAN, onset ? onset->force : NAN,
-                    onset ? onset->pierced_force : NAN, after, steady.force_in * kTip * kTip,
-                    steady.force_out * kTip * kTip);
+                    steady.hole_radius * kTip, onset.depth, onset.force, onset.pierced_force, on(3e-6),
+                    steady.force_in * kTip * kTip, steady.force_out * kTip * kTip, now() - begin);
       table.add(row);
-      (onset && onset->depth < kDepth ? low : high) = share;
+      if (std::abs(onset.depth - kDepth) < 0.002 * kDepth) break;
+      // The depth of the onset over the logarithm of the steady force is nearly a straight line; at first its slope
+      // is that of the whole cell's force.
+      const double last = std::log(share);
+      const double slope = before == 0 ? kDepth / 6 : (onset.depth - depth_before) / (last - before);
+      before = last;
+      depth_before = onset.depth;
+      share = std::exp(last + (kDepth - onset.depth) / slope);
     }
   }
 }

@@ -23,6 +23,9 @@ constexpr double kNear = 0.7;
 /// largest.
 constexpr double kFree = 20;
 
+/// Penetration, over the hardening, from which the penalty grows no more.
+constexpr double kHardest = 40;
+
 /// A section's (r, z) is the point (r, 0, z) in space.
 Eigen::Vector3d inSpace(const Eigen::Vector2d& v) { return {v[0], 0, v[1]}; }
 Eigen::Vector3d inSpace(const Eigen::Vector3d& v) { return v; }
@@ -111,10 +114,20 @@ typename RigidContact<Dim>::Vector RigidContact<Dim>::relative(const Facet& face
 }
 
 template <int Dim>
+typename RigidContact<Dim>::Pressing RigidContact<Dim>::pressing(double penetration) const {
+  const double penalty = config_.penalty, range = config_.hardening;
+  if (range == 0) return {0.5 * penalty * penetration * penetration, penalty * penetration, penalty};
+  const double inside = std::min(penetration / range, kHardest), on = penetration - inside * range;
+  const double more = std::expm1(inside), stiffness = penalty * (more + 1), traction = penalty * range * more;
+  const double energy = penalty * range * range * (more - inside);
+  return {energy + (traction + 0.5 * stiffness * on) * on, traction + stiffness * on, stiffness};
+}
+
+template <int Dim>
 bool RigidContact<Dim>::contribution(const Point& point, const Vector& at, Local& local) const {
   const bool stuck = config_.mode == RigidContactConfig::Mode::kSticking && point.memory.touching;
-  const double stiffness = config_.penalty * point.weight;
   if (stuck) {
+    const double stiffness = config_.penalty * point.weight;
     const Vector stretch = at - point.memory.anchor;
     local.energy = 0.5 * stiffness * stretch.squaredNorm();
     local.gradient = stiffness * stretch;
@@ -131,12 +144,14 @@ bool RigidContact<Dim>::contribution(const Point& point, const Vector& at, Local
     Vector normal;
     Matrix curvature;
     gap(at, normal, curvature);
-    local.energy = 0.5 * stiffness * distance * distance;
-    local.gradient = stiffness * distance * normal;
+    const Pressing now = pressing(-distance);
+    local.energy = point.weight * now.energy;
+    local.gradient = -point.weight * now.traction * normal;
     // During the iterations a point may be so far inside that the true second derivative is
     // negative.
-    const double bending = std::max(distance, -kDeeper * deepest_ - kDeepestFirst * surface_->size());
-    local.hessian = stiffness * (normal * normal.transpose() + bending * curvature);
+    const double deepest = kDeeper * deepest_ + kDeepestFirst * surface_->size();
+    const double bending = distance < -deepest ? pressing(deepest).traction : now.traction;
+    local.hessian = point.weight * (now.stiffness * normal * normal.transpose() - bending * curvature);
   }
   if (with_friction) addFriction(point, at, local);
   return true;
@@ -237,7 +252,6 @@ bool RigidContact<Dim>::settle(Memory& memory, const Vector& at) const {
     return was_touching != memory.touching;
   }
   if (config_.friction == 0) return false;
-  const double stiffness = config_.penalty;
   if (was_touching) {
     const Vector slip = (at - memory.anchor) - memory.normal * memory.normal.dot(at - memory.anchor);
     const double bound = config_.friction * memory.traction, length = slip.norm();
@@ -247,7 +261,7 @@ bool RigidContact<Dim>::settle(Memory& memory, const Vector& at) const {
     memory.anchor = at;
   }
   memory.touching = distance < 0;
-  memory.traction = stiffness * std::max(0.0, -distance);
+  memory.traction = pressing(std::max(0.0, -distance)).traction;
   memory.normal = normal;
   return was_touching || memory.touching;
 }

@@ -20,6 +20,9 @@ struct RigidContactConfig {
   double adhesion_range = 0;                         ///< m, > 0 with adhesion: gap of the largest traction
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< m, of the surface's frame at first contact
   double penalty = 0;                                ///< Pa/m, traction per penetration, > 0
+  /// m, penetration over which the penalty grows to e times itself, so that it stays stiff beside any pressure; 0: it
+  /// is constant. For sliding without friction.
+  double hardening = 0;
   /// Whether each component of the place follows that of the tip's translation; else it stays at the origin's.
   std::array<bool, 3> moves = {true, true, true};
 };
@@ -28,7 +31,9 @@ struct RigidContactConfig {
 /// surface's quadrature points (Wriggers, "Computational contact mechanics", ch. 6); tractions are
 /// per undeformed area.
 ///
-/// Sliding: energy penalty/2 gap^2 where the gap is negative. Coulomb's friction also has an
+/// Sliding: energy penalty/2 gap^2 where the gap is negative. Because the traction is per undeformed area, a surface
+/// that yields like a free one may flow along the pipette under a high pressure and wrinkle; `hardening` keeps it from
+/// yielding. Coulomb's friction also has an
 /// incremental potential, bounded by the normal traction of the previous step. A point slides once it has
 /// slipped by `slip_range` elastically. With the penalty as its stiffness instead, sticking and sliding
 /// points differ so much that Newton's method ends at a tenth of a cell's diameter. Sticking: a point
@@ -104,6 +109,11 @@ class RigidContact : public EnergyTerm {
 
   void addFacet(const LayeredBody<Dim>& body, const typename QuadraticMesh<Dim>::Facet& facet);
   Vector relative(const Facet& facet, const Point& point, const Eigen::VectorXd& state) const;
+  /// Of the penalty, per undeformed area, at a penetration (m).
+  struct Pressing {
+    double energy, traction, stiffness;  ///< J/m^2, Pa, Pa/m
+  };
+  Pressing pressing(double penetration) const;
   bool contribution(const Point& point, const Vector& at, Local& local) const;
   double slipStiffness(const Memory& memory) const;  ///< Pa/m
   void addFriction(const Point& point, const Vector& at, Local& local) const;

@@ -69,11 +69,14 @@ std::size_t PiercedBranch::rightOf(double length) const {
   return i;
 }
 
-/// A needle that is not as far in its hole is not known to stay there.
+/// A needle that is not as far in its hole is not known to stay there. Further in, energies are continued, and too
+/// small where the cell stiffens.
 bool PiercedBranch::isSolved(double depth, double length) const {
   const std::size_t right = rightOf(length);
-  const double first = std::max(holes_[right - 1].knots.front().beyond, holes_[right].knots.front().beyond);
-  return depth - length >= first;
+  const std::vector<Knot>&left_knots = holes_[right - 1].knots, &right_knots = holes_[right].knots;
+  const double first = std::max(left_knots.front().beyond, right_knots.front().beyond);
+  const double last = std::min(left_knots.back().beyond, right_knots.back().beyond);
+  return depth - length >= first && depth - length <= last;
 }
 
 /// Cubic in the length with slopes of parabolas: linear in the values, so that force and release are derivatives of one

@@ -1,16 +1,35 @@
 #include "cell/model/pierced_cell.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "cell/contact/rigid_contact.h"
 #include "cell/contact/rounded_tip.h"
+#include "cell/mechanics/relaxation.h"
 #include "cell/mesh/pierced_section.h"
+#include "cell/penetration/hole_expansion.h"
 
 namespace microinjection {
 namespace {
 
 constexpr double kSlipRange = 0.01;     ///< in the tip's radius
 constexpr double kStiffContact = 3000;  ///< in Young's moduli over the tip's radius
+constexpr double kHardening = 1e-3;     ///< of the contact, in the tip's radius
+
+// Of the needle that grows in its hole, in radii of the tip.
+constexpr double kThin = 0.98;     ///< at first, over the hole
+constexpr double kGrowth = 0.03;   ///< in a step
+constexpr double kFurther = 0.3;   ///< along the axis, at most, in a step
+constexpr double kInto = 0.02;     ///< at least, beyond the hole's bottom
+constexpr double kFelt = 1e-2;     ///< over the last force: from here on the depth follows the force
+constexpr double kGap = 0.5;       ///< below the tip: with more it is being pushed out
+constexpr double kJump = 4e-3;     ///< step across an instability
+constexpr int kJumps = 12;         ///< in one step
+constexpr int kIterations = 400;   ///< of one jump
+constexpr double kDeepest = 1.75;  ///< depth, over the cell's radius
+constexpr double kAround = 0.5;    ///< opening of a rim that has the needle within it, over the needle's
+
+constexpr double kOnRim = 1e-6;  ///< of the hole's radius
 
 PiercedSectionConfig sectionOf(const PiercedCellConfig& config) {
   const double fine = std::pow(2, -config.level);
@@ -35,32 +54,34 @@ std::vector<std::shared_ptr<const Material>> onlyLayer(const MaterialConfig& mat
 }  // namespace
 
 PiercedCell::PiercedCell(const PiercedCellConfig& config)
-    : body_(std::make_shared<LayeredBody<2>>(makePiercedSection(sectionOf(config)), ElementKind::kP2P0,
+    : config_(config),
+      body_(std::make_shared<LayeredBody<2>>(makePiercedSection(sectionOf(config)), ElementKind::kP2P0,
                                              onlyLayer(config.material))) {
   const RoundedTip tip = RoundedTip::make("hemisphere", config.tip_radius, 0);
   RigidContactConfig contact;
   contact.mode = config.sticking ? RigidContactConfig::Mode::kSticking : RigidContactConfig::Mode::kSliding;
   contact.friction = config.friction;
   contact.slip_range = kSlipRange * config.tip_radius;
+  if (contact.mode == RigidContactConfig::Mode::kSliding && contact.friction == 0)
+    contact.hardening = kHardening * config.tip_radius;
   contact.penalty = kStiffContact * config.material.young_modulus / config.tip_radius;
   contact.origin.z() = tip.touchHeight(config.radius, Eigen::Vector2d::Zero());
   contact_ = std::make_shared<RigidContact<2>>(*body_, std::make_shared<RoundedTip>(tip), contact);
   system_ = std::make_unique<EquilibriumSystem>(EquilibriumSystem::Terms{body_, contact_}, constraints(config),
                                                 SymmetricSolver::Method::kSimplicial);
-  LoadPathConfig path;
-  path.length = 2 * config.radius;
-  path.first_step = config.tip_radius / 40;
-  path.largest_step = config.tip_radius / 6;
-  path.smallest_step = 1e-5 * config.tip_radius;
-  path.smooth = false;
-  path.easy = 8;
-  path_ = std::make_unique<LoadPath>(*system_, path);
+  path_config_.length = 2 * config.radius;
+  path_config_.first_step = config.tip_radius / 40;
+  path_config_.largest_step = config.tip_radius / 6;
+  path_config_.smallest_step = 1e-5 * config.tip_radius;
+  path_config_.smooth = false;
+  path_config_.easy = 8;
+  path_ = std::make_unique<LoadPath>(*system_, path_config_);
   const auto& nodes = body_->mesh().nodes;
   for (int node = 0; node < static_cast<int>(nodes.size()); ++node) {  // the highest on the axis
     if (nodes[node].x() == 0 && (bottom_ < 0 || nodes[node].y() > nodes[bottom_].y())) bottom_ = node;
+    const bool on_rim = config.hole_length > 0 && std::abs(nodes[node].x() / config.hole_radius - 1) < kOnRim;
+    if (on_rim && (rim_ < 0 || nodes[node].y() > nodes[rim_].y())) rim_ = node;
   }
-  touch_height_ = config.radius;
-  thinner_ = config.tip_radius - 0.98 * config.hole_radius;
 }
 
 PiercedCell::~PiercedCell() = default;
@@ -89,30 +110,72 @@ Constraints PiercedCell::constraints(const PiercedCellConfig& config) const {
   return result;
 }
 
-bool PiercedCell::advance(double depth) {
-  const LoadPath::Result result = path_->advance({0, 0, -depth});
-  reason_ = result.reason;
-  return result.converged;
-}
+bool PiercedCell::advance(double depth) { return follow({0, 0, -depth}); }
 
-bool PiercedCell::insert(double depth) {
-  LoadPath::Result result;
-  for (const Eigen::Vector3d& target :
-       {Eigen::Vector3d(-thinner_, 0, 0), Eigen::Vector3d(-thinner_, 0, -depth), Eigen::Vector3d(0, 0, -depth)}) {
-    result = path_->advance(target);
-    if (!result.converged) break;
+bool PiercedCell::insert(double force, double pressing) {
+  const double tip = config_.tip_radius, hole = config_.hole_radius, shallowest = config_.hole_length + kInto * tip;
+  const HoleExpansion expansion(*body_->materials().front(), config_.radius / tip);
+  const auto opened = [&](double radius) {  // N, with which a long hole pushes a shaft of this radius out
+    return radius > hole ? radius * radius * expansion.at(hole / radius).energy : 0;
+  };
+  const double last = opened(tip);
+  double radius = kThin * hole, depth = shallowest;
+  if (!lead({radius - tip, 0, 0}) || !lead({radius - tip, 0, -depth})) return false;
+  while (radius < tip) {
+    const double next = std::min(tip, radius + kGrowth * tip), wanted = pressing * opened(next);
+    if (wanted > kFelt * last) {
+      const Eigen::Matrix3d& stiffness = path_->stiffness();
+      const double missing = wanted + path_->reaction().z() + stiffness(2, 0) * (next - radius);
+      const double deeper = stiffness(2, 2) > 0 ? missing / stiffness(2, 2) : kFurther * tip;
+      depth = std::max(shallowest, depth + std::clamp(deeper, -kFurther * tip, kFurther * tip));
+    }
+    if (!lead({next - tip, 0, -depth}) || (wanted > kFelt * last && !isAtBottom())) return false;
+    radius = next;
   }
+  while (this->force() < force && depth < kDeepest * config_.radius && lead({0, 0, -depth})) depth += kFurther * tip;
+  return isAtBottom() && isInside();
+}
+
+bool PiercedCell::follow(const Eigen::Vector3d& target) {
+  const LoadPath::Result result = path_->advance(target - start_);
   reason_ = result.reason;
   return result.converged;
 }
 
+/// Elements at a wall that is stretched by far wrinkle, and the rim snaps over the tip.
+bool PiercedCell::lead(const Eigen::Vector3d& target) {
+  for (int jumps = 0; jumps < kJumps; ++jumps) {
+    if (follow(target)) return true;
+    if (!jump(target)) return false;
+  }
+  return false;
+}
+
+/// Steps on towards the target and comes to rest at the next equilibrium downhill.
+bool PiercedCell::jump(const Eigen::Vector3d& target) {
+  const Eigen::Vector3d from = place(), left = target - from;
+  const Eigen::Vector3d step = std::min(1.0, kJump * config_.tip_radius / left.norm()) * left;
+  Eigen::VectorXd state = path_->state();
+  system_->addTo(state, Eigen::VectorXd::Zero(system_->freeSize()), step);
+  const Relaxation::Result result = Relaxation(*system_, {path_config_.length, kIterations}).relax(state);
+  if (!result.converged) return false;
+  start_ = from + step;
+  path_ = std::make_unique<LoadPath>(*system_, path_config_, state);
+  return true;
+}
+
+Eigen::Vector3d PiercedCell::place() const { return start_ + path_->translation(); }
+bool PiercedCell::isAtBottom() const { return bottom() - depth() < kGap * config_.tip_radius; }
+bool PiercedCell::isInside() const {
+  return path_->state()[2 * rim_] > kAround * (config_.tip_radius - config_.hole_radius);
+}
 double PiercedCell::force() const { return -path_->reaction().z(); }
 double PiercedCell::energy() const { return path_->energy(); }
-double PiercedCell::depth() const { return -path_->translation().z(); }
+double PiercedCell::depth() const { return -place().z(); }
 double PiercedCell::penetration() const { return contact_->penetration(); }
 int PiercedCell::unknowns() const { return system_->freeSize(); }
 double PiercedCell::bottom() const {
-  return touch_height_ - body_->mesh().nodes[bottom_].y() - path_->state()[2 * bottom_ + 1];
+  return config_.radius - body_->mesh().nodes[bottom_].y() - path_->state()[2 * bottom_ + 1];
 }
 std::vector<Eigen::Vector2d> PiercedCell::places() const {
   std::vector<Eigen::Vector2d> result = body_->mesh().nodes;

@@ -30,18 +30,27 @@ struct PiercedCellConfig {
 };
 
 /// The solution of such a cell in its section while the needle is led along the axis: the branch of equilibria that a
-/// puncture leads to (doc/design/puncture.md). Needle and hole touch without a gap, by the contact of RigidContact; the
-/// needle opens the hole as it goes in, so the path starts above the cell as every indentation does.
+/// puncture leads to (doc/design/puncture.md). Needle and hole touch by the contact of RigidContact.
 class PiercedCell {
  public:
   explicit PiercedCell(const PiercedCellConfig& config);
   ~PiercedCell();
 
-  /// Leads the needle to a depth, m, below the undeformed pole. False: no equilibrium was found, see reason().
+  /// Leads the needle to a depth, m, below the undeformed pole. False: the stable equilibria end on the way, at
+  /// depth(), see reason().
   bool advance(double depth);
 
-  /// Puts a needle that is thinner than the hole at a depth, m, and lets it grow to its radius there.
-  bool insert(double depth);
+  /// The same, also across instabilities of a pierced cell, each to the next equilibrium of less energy.
+  bool advanceAcross(double depth) { return lead({0, 0, -depth}); }
+
+  /// Puts a thin needle to the hole's bottom, lets it grow to its radius there, and leads it on until the force on it
+  /// is `force`, N, or it can go no further. As it grows it is led deeper, so that it feels `pressing` times what a
+  /// long hole pushes out with: one that feels less is pushed out of a hole of a material that stiffens. False: it does
+  /// not stay at the bottom. @pre there is a hole, and no friction
+  bool insert(double force, double pressing = 1.05);
+
+  /// The hole's rim has the needle within it. @pre there is a hole
+  bool isInside() const;
 
   const std::string& reason() const { return reason_; }
   double force() const;        ///< N, that pushes the needle out
@@ -56,14 +65,20 @@ class PiercedCell {
 
  private:
   Constraints constraints(const PiercedCellConfig& config) const;
+  bool follow(const Eigen::Vector3d& target);
+  bool lead(const Eigen::Vector3d& target);
+  bool jump(const Eigen::Vector3d& target);
+  bool isAtBottom() const;
+  Eigen::Vector3d place() const;
 
-  double thinner_ = 0;       ///< m, than the needle
-  double touch_height_ = 0;  ///< m, of the tip at depth 0
+  PiercedCellConfig config_;
+  LoadPathConfig path_config_;
   std::shared_ptr<LayeredBody<2>> body_;
   std::shared_ptr<RigidContact<2>> contact_;
   std::unique_ptr<EquilibriumSystem> system_;
   std::unique_ptr<LoadPath> path_;
-  int bottom_ = -1;  ///< node
+  Eigen::Vector3d start_ = Eigen::Vector3d::Zero();  ///< m, place at which path_ began
+  int bottom_ = -1, rim_ = -1;                       ///< nodes
   std::string reason_;
 };
 

@@ -19,14 +19,16 @@ using Hole = PiercedBranch::Hole;
 
 // Lengths in radii of the tip, forces over the steady one.
 const std::vector<double> kLengths = {0.75, 1, 1.25, 1.75, 2.5, 4, 6, 9, 13, 18};
-const std::vector<double> kBeyond = {0.25, 0.75, 1.5, 2.5, 4};  // where the needle may grow in its hole
+const std::vector<double> kPressing = {1.05, 1.2, 1.5};  // tried for a needle that grows in its hole
 constexpr double kStep = 0.25;
-constexpr double kHighest = 1.6;                            // force up to which holes are followed
-constexpr double kBack = 2.5;                               // from the bottom, to which the needle is withdrawn
-constexpr double kLongest = 1.3;                            // hole, of the cell's radius
-constexpr double kDeepest = 1.7;                            // needle in the whole cell, same
+constexpr double kHighest = 2.4;   // force up to which holes are followed
+constexpr double kBack = 2.5;      // from the bottom, to which the needle is withdrawn
+constexpr double kLeap = 0.1;      // of the force, or of the work of a step, across an instability on the way out
+constexpr double kClosest = 0.02;  // knots
+constexpr double kLongest = 1.3;   // hole, of the cell's radius
+constexpr double kDeepest = 1.7;   // needle in the whole cell, same
 constexpr double kSmallestHole = 0.15, kLargestHole = 0.9;  // that the meshes can have
-constexpr int kVersion = 2;                                 // of what is stored
+constexpr int kVersion = 3;                                 // of what is stored
 
 double modulusOf(const Scene& scene) { return scene.cell.material().young_modulus; }
 
@@ -68,26 +70,28 @@ std::vector<Knot> wholePath(PiercedCellConfig config, const Scene::Contact& cont
   return knots;
 }
 
-/// Empty when the needle does not stay in the hole.
-std::vector<Knot> holePath(const PiercedCellConfig& config, double highest) {
+/// Recorded on the way out, to the last equilibrium before the needle leaves the hole: there the force rises, or more
+/// energy is lost than by wrinkles that straighten. Empty when the needle does not stay in.
+std::vector<Knot> holePath(const PiercedCellConfig& config, double highest, double pressing) {
+  PiercedCell cell(config);
+  if (!cell.insert(highest, pressing)) return {};
+  const double outermost = std::max(1 - config.hole_length, -kBack);
   std::vector<Knot> knots;
-  for (const double beyond : kBeyond) {
-    PiercedCell cell(config);
-    if (!cell.insert(config.hole_length + beyond)) continue;
-    const auto knot = [&](const PiercedCell& at) {
-      return Knot{at.depth() - config.hole_length, at.force(), at.energy()};
-    };
-    knots = {knot(cell)};
-    for (double next = beyond + kStep; cell.force() < highest && cell.advance(config.hole_length + next); next += kStep)
-      knots.push_back(knot(cell));
-    PiercedCell back(config);
-    back.insert(config.hole_length + beyond);
-    for (double next = beyond - kStep; next >= -kBack && config.hole_length + next > 1; next -= kStep) {
-      if (!back.advance(config.hole_length + next)) break;
-      knots.insert(knots.begin(), knot(back));
-    }
-    break;
+  const auto record = [&] { knots.push_back({cell.depth() - config.hole_length, cell.force(), cell.energy()}); };
+  record();
+  for (double next = knots.back().beyond; next > outermost;) {
+    next = std::max(outermost, next - kStep);
+    const bool smooth = cell.advance(config.hole_length + next);
+    if (smooth || knots.back().beyond - (cell.depth() - config.hole_length) > kClosest) record();
+    if (smooth) continue;
+    const Knot last = knots.back();
+    if (!cell.advanceAcross(config.hole_length + next) || !cell.isInside()) break;
+    const double work = 0.5 * (last.force + cell.force()) * (last.beyond - next);
+    if (cell.force() > (1 + kLeap) * last.force || last.energy - work - cell.energy() > kLeap * last.force * kStep)
+      break;
+    if (last.beyond - next > kClosest) record();
   }
+  std::reverse(knots.begin(), knots.end());
   return knots.size() < 2 ? std::vector<Knot>() : knots;
 }
 
@@ -114,7 +118,10 @@ PiercedPaths solvePaths(const Scene& scene, const SteadyPenetration& steady, dou
   for (int i = 0; i + 1 < count; ++i) {
     if (report) report(i + 1, count);
     config.hole_length = lengths[i];
-    Hole hole{lengths[i], holePath(config, highest)};
+    Hole hole{lengths[i], {}};
+    for (const double pressing : kPressing) {
+      if (hole.knots.empty()) hole.knots = holePath(config, highest, pressing);
+    }
     if (!hole.knots.empty()) paths.holes.push_back(std::move(hole));
   }
   const double tip = scene.needle.tip.radius, force = modulusOf(scene) * tip * tip;

@@ -16,9 +16,9 @@ bool piercedByMechanics(const Scene& scene);
 /// What a long hole through the scene's cell costs. @pre piercedByMechanics(scene)
 SteadyPenetration steadyPenetration(const Scene& scene);
 
-/// Solves the scene's cell whole and with holes of several lengths (PiercedCell); half a minute on one core. The hole
-/// has the radius that is best for steady penetration. `level`: of the meshes. `report` is called before each of the
-/// paths with their number and count.
+/// Solves the scene's cell whole and with holes of several lengths (PiercedCell); half a minute on one core, minutes of
+/// a material that stiffens. The hole has the radius that is best for steady penetration. `level`: of the meshes.
+/// `report` is called before each of the paths with their number and count.
 /// @throws ConfigError for a scene that cannot be pierced by mechanics, and says why
 PiercedBranch solvePiercedBranch(const Scene& scene, double level = 0,
                                  const std::function<void(int, int)>& report = {});

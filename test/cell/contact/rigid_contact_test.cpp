@@ -106,6 +106,11 @@ TEST(RigidContact, DerivativesInTheSection) {
   RigidContactConfig sliding;
   sliding.mode = RigidContactConfig::Mode::kSliding;
   expectDerivativesOf<2>(sliding);
+  sliding.hardening = 0.01e-6;
+  expectDerivativesOf<2>(sliding);
+  sliding.hardening = 0.0005e-6;  // the penalty grows no more at this depth
+  expectDerivativesOf<2>(sliding);
+  sliding.hardening = 0;
   sliding.friction = 0.3;
   expectDerivativesOf<2>(sliding);
   sliding.slip_range = 0.03e-6;

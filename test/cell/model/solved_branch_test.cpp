@@ -50,7 +50,8 @@ TEST(PiercedCell, ANeedleInItsHoleFeelsWhatOpensIt) {
   config.hole_length = 15e-6;
   config.level = -0.5;
   PiercedCell cell(config);
-  ASSERT_TRUE(cell.insert(6e-6)) << cell.reason();
+  ASSERT_TRUE(cell.insert(0)) << cell.reason();
+  ASSERT_TRUE(cell.advance(6e-6)) << cell.reason();
   const double before = cell.energy();
   ASSERT_TRUE(cell.advance(9e-6)) << cell.reason();
   const auto material = makeMaterial(config.material);
@@ -58,6 +59,29 @@ TEST(PiercedCell, ANeedleInItsHoleFeelsWhatOpensIt) {
   EXPECT_NEAR(cell.force(), opened, 0.03 * opened);
   EXPECT_NEAR(cell.energy() - before, opened * 3e-6, 0.03 * opened * 3e-6);
   EXPECT_LT(cell.penetration(), 0.02 * config.tip_radius);
+}
+
+/// Opening the hole costs more than denting the cell below it by ten tip radii would.
+TEST(PiercedCell, ANeedleStaysInASmallHoleOfAMaterialThatStiffens) {
+  PiercedCellConfig config;
+  config.material = softScene().cell.material();
+  config.material.model = "ogden";
+  config.material.ogden_exponent = 8;
+  config.radius = 28e-6;
+  config.held_radius = 10e-6;
+  config.tip_radius = 3e-6;
+  config.hole_radius = 0.95e-6;
+  config.hole_length = 18e-6;
+  config.level = -0.5;
+  PiercedCell cell(config);
+  ASSERT_TRUE(cell.insert(0)) << cell.reason();
+  EXPECT_TRUE(cell.isInside());
+  const auto material = makeMaterial(config.material);
+  const double opened = HoleExpansion(*material, config.radius / config.tip_radius).at(0.95 / 3).energy * 9e-12;
+  EXPECT_GT(cell.force(), opened);
+  ASSERT_TRUE(cell.advanceAcross(26e-6)) << cell.reason();
+  EXPECT_TRUE(cell.isInside());
+  EXPECT_NEAR(cell.force(), opened, 0.05 * opened);
 }
 
 TEST(SteadyPenetration, RefusesWhatItCannotPierce) {
