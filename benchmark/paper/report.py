@@ -29,7 +29,7 @@ COLUMNS = ('item', 'quantity', 'paper', 'ours', 'unit', 'verdict')
 #   tasks(programs, root, data_dir) -> [(name, command, seconds that it may take)]
 # without which paper_MODULE --csv DATA/MODULE.csv is run where there is such a program.
 SECTIONS = ('table_1', 'table_3', 'force_depth', 'identified', 'stages', 'dynamics', 'prestretch', 'membrane',
-            'withdrawal', 'tensegrity')
+            'puncture', 'withdrawal', 'tensegrity')
 DEFAULT_LIMIT = 600  # s
 
 
