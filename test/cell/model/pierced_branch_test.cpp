@@ -45,6 +45,23 @@ TEST(PiercedBranch, FailsWhereTheHoleHasLessEnergyWithItsCost) {
   EXPECT_FALSE(springBranch(20e-6).onset()) << "the whole cell's path ends before";
 }
 
+/// Of a cell that stiffens, a path that is continued with a constant stiffness has too little energy.
+TEST(PiercedBranch, NoCrackBeginsBeyondTheEndOfAPath) {
+  constexpr double kCubic = 1.6e7, kStiffCrack = 1.2e-6;  // N/m^3, N: not pierced in 40 um
+  const auto path = [&](double deepest) {
+    std::vector<PiercedBranch::Knot> knots;
+    for (double beyond = 0; beyond <= deepest; beyond += 1e-6)
+      knots.push_back({beyond, kCubic * std::pow(beyond, 3), kCubic / 4 * std::pow(beyond, 4)});
+    return knots;
+  };
+  for (const double deepest : {10e-6, 40e-6}) {
+    const PiercedBranch branch(path(40e-6), {{1e-6, path(deepest)}, {3e-6, path(deepest)}}, kStiffCrack);
+    const double excess = branch.at(40e-6, 3e-6).energy + kStiffCrack * 3e-6 - branch.whole(40e-6).energy;
+    EXPECT_EQ(excess < 0, deepest < 40e-6) << "the test would not notice";
+    EXPECT_FALSE(branch.onset()) << deepest;
+  }
+}
+
 /// Continued to the pole, the force with which its path begins would give the shortest hole a negative energy there.
 TEST(PiercedBranch, BeginsOnlyWhereTheNeedleIsKnownToStayInTheHole) {
   SpringBranch made;

@@ -40,15 +40,20 @@ TEST(SolvedBranch, TheHoleGrowsAtTheForceOfSteadyPenetration) {
   EXPECT_NEAR(branch.at(depth, length).force, steady, 0.03 * steady);
 }
 
-TEST(PiercedCell, ANeedleInItsHoleFeelsWhatOpensIt) {
+PiercedCellConfig pierced(double radius, double held_radius, double hole_radius, double hole_length) {
   PiercedCellConfig config;
   config.material = softScene().cell.material();
-  config.radius = 30e-6;
-  config.held_radius = 9e-6;
+  config.radius = radius;
+  config.held_radius = held_radius;
   config.tip_radius = 3e-6;
-  config.hole_radius = 1.5e-6;
-  config.hole_length = 15e-6;
+  config.hole_radius = hole_radius;
+  config.hole_length = hole_length;
   config.level = -0.5;
+  return config;
+}
+
+TEST(PiercedCell, ANeedleInItsHoleFeelsWhatOpensIt) {
+  const PiercedCellConfig config = pierced(30e-6, 9e-6, 1.5e-6, 15e-6);
   PiercedCell cell(config);
   ASSERT_TRUE(cell.insert(0)) << cell.reason();
   ASSERT_TRUE(cell.advance(6e-6)) << cell.reason();
@@ -63,16 +68,9 @@ TEST(PiercedCell, ANeedleInItsHoleFeelsWhatOpensIt) {
 
 /// Opening the hole costs more than denting the cell below it by ten tip radii would.
 TEST(PiercedCell, ANeedleStaysInASmallHoleOfAMaterialThatStiffens) {
-  PiercedCellConfig config;
-  config.material = softScene().cell.material();
+  PiercedCellConfig config = pierced(28e-6, 10e-6, 0.95e-6, 18e-6);
   config.material.model = "ogden";
   config.material.ogden_exponent = 8;
-  config.radius = 28e-6;
-  config.held_radius = 10e-6;
-  config.tip_radius = 3e-6;
-  config.hole_radius = 0.95e-6;
-  config.hole_length = 18e-6;
-  config.level = -0.5;
   PiercedCell cell(config);
   ASSERT_TRUE(cell.insert(0)) << cell.reason();
   EXPECT_TRUE(cell.isInside());
