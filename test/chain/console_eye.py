@@ -97,21 +97,6 @@ def share_of(colour, pixels):
     return float(numpy.mean(has(pixels, colour)))
 
 
-def box_of(colour, pixels):
-    """(left, top, right, bottom) of what has this colour. @raises NotSeen"""
-    rows, columns = numpy.nonzero(has(pixels, colour))
-    if rows.size == 0:
-        raise NotSeen(f"nothing has the colour {colour}")
-    return int(columns.min()), int(rows.min()), int(columns.max()), int(rows.max())
-
-
-def offered_below(row, pixels):
-    """Places of the offered buttons below a row, from top to bottom."""
-    below = pixels[row:]
-    column = int(numpy.argmax(has(below, OFFERED).sum(axis=0)))
-    return [(column, row + (a + b) // 2) for a, b in runs(below[:, column], OFFERED) if b - a > LEAST_BUTTON]
-
-
 def rows_of_offered(pixels, least):
     """[[place, ...], ...] of the offered buttons from top to bottom and from left to right, rows of at least that many."""
     blue = has(pixels, OFFERED)

@@ -2,17 +2,13 @@
 """An injection from the console alone, by mouse and space bar, and what the console shows of it."""
 
 import subprocess
-import threading
-import time
 import unittest
 
-import actionlib
 import numpy as np
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalID
-from cell_microinjection.msg import (GoToPixelAction, GoToPixelFeedback, GoToPixelResult, InjectionStatus, InjectorState,
-                                     LoopState, OperatingState)
+from cell_microinjection.msg import InjectionStatus, InjectorState, LoopState, OperatingState
 from geometry_msgs.msg import PoseStamped
 from sensor_msgs.msg import Image
 
@@ -21,7 +17,6 @@ from console_user import START_PATIENCE, ConsoleUser
 from messages import position
 
 COLOUR = (200, 0, 200)  # of the test's image, which nothing else on the screen has
-GOAL = (255, 80, 255)   # of the mark at a proposed place
 LEAST_SHARE = 0.05      # of the screen that an image fills
 
 
@@ -154,79 +149,6 @@ class ConsoleTest(ConsoleUser, unittest.TestCase):
         subprocess.run(["rosnode", "kill", "/injection_controller"], check=True, timeout=60, stdout=subprocess.DEVNULL)
         console = self.shows(lambda seen: seen.headline == ["red"], "a red headline")
         self.assertFalse(any(console.offered.values()))
-
-    def test_6_a_click_into_the_image_leads_the_needle(self):
-        """There is no controller anymore: the test stands for it, and for the node that leads the needle by images."""
-        rospy.set_param("/injection_controller/mode", "manual")
-        image = Image(width=64, height=48, encoding="rgb8", step=3 * 64, data=bytes(COLOUR) * (64 * 48))
-        images = rospy.Publisher("/microscope/image_raw", Image, queue_size=1)
-        ended = threading.Event()
-
-        def show_images():
-            """Whatever a look at the screen takes: a console without an image for 2 s forgets what was clicked."""
-            while not ended.wait(0.1):
-                image.header.stamp = rospy.Time.now()
-                images.publish(image)
-        camera = threading.Thread(target=show_images)
-        camera.start()
-        self.addCleanup(camera.join)
-        self.addCleanup(ended.set)
-        # As the controller does: its operating state comes at a change only.
-        operating = rospy.Publisher("/controller/operating_state", OperatingState, queue_size=1, latch=True)
-        operating.publish(OperatingState(state="ENABLED"))
-        beats = rospy.Publisher("/controller/injection_state", InjectionStatus, queue_size=1)
-        beat = rospy.Timer(rospy.Duration(0.1), lambda _: beats.publish(InjectionStatus(state="idle")))
-        self.addCleanup(beat.shutdown)
-        goals, preempted = [], []
-
-        def lead(goal):
-            goals.append(goal)
-            server.publish_feedback(GoToPixelFeedback(distance=12.0))
-            while not server.is_preempt_requested():
-                time.sleep(0.02)
-            preempted.append(goal)
-            server.set_preempted(GoToPixelResult(success=False, message="as it was told"))
-        server = actionlib.SimpleActionServer("/visual_servo/go_to_pixel", GoToPixelAction, lead, auto_start=False)
-        server.start()
-
-        def offered_below_image():
-            if not self.look():
-                return None
-            try:
-                box = console_eye.box_of(COLOUR, self.picture)
-            except console_eye.NotSeen:
-                return None
-            return box, console_eye.offered_below(box[3] + 1, self.picture)
-
-        def shown(count):
-            def check():
-                seen = offered_below_image()
-                return seen if seen and len(seen[1]) == count else None
-            return self.until(check, f"an image above {count} offered buttons")
-        (left, top, right, bottom), _ = shown(0)
-        self.do("mousemove", left + 40, top + 40)
-        self.do("click", "--repeat", 2, "--delay", 60, 1)  # a double click proposes nothing
-        time.sleep(2)  # more than a double click may take, and than a silent controller is believed
-        shown(0)
-        place = (left + round(0.3 * (right - left)), top + round(0.6 * (bottom - top)))
-        self.click(place)
-        shown(2)
-        operating.publish(OperatingState(state="PAUSED"))
-        shown(0)  # who resumes does not resume what a click of before has proposed
-        operating.publish(OperatingState(state="ENABLED"))
-        shown(0)
-        self.click(place)
-        _, (go, _) = shown(2)
-        self.assertGreater(console_eye.share_of(GOAL, self.picture), 0)
-        self.assertEqual(goals, [])  # before it is confirmed
-        self.click(go)
-        self.until(lambda: offered_below_image() and goals, "a goal")
-        self.assertAlmostEqual(goals[0].x, 64 * (place[0] + 0.5 - left) / (right + 1 - left) - 0.5, delta=0.3)
-        self.assertAlmostEqual(goals[0].y, 48 * (place[1] + 0.5 - top) / (bottom + 1 - top) - 0.5, delta=0.3)
-        _, (cancel,) = shown(1)
-        self.click(cancel)
-        self.until(lambda: offered_below_image() and preempted, "the end of the way")
-        self.assertEqual(len(goals), 1)
 
 
 if __name__ == "__main__":

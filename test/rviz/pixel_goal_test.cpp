@@ -17,6 +17,8 @@ class PixelGoalTest : public testing::Test {
  protected:
   using Leading = ScriptedAction<cell_microinjection::GoToPixelAction>;
   static constexpr std::uint32_t kWide = 64, kHigh = 48;  // px
+  static constexpr int kGrey = 200;
+  static constexpr QRgb kImageColour = 0xff000000 | kGrey << 16 | kGrey << 8 | kGrey, kGoalMark = 0xffff50ff;
 
   PixelGoalTest() {
     startQt();
@@ -50,13 +52,13 @@ class PixelGoalTest : public testing::Test {
     image.height = kHigh;
     image.encoding = "mono8";
     image.step = wide;
-    image.data.assign(wide * kHigh, 200);
+    image.data.assign(wide * kHigh, kGrey);
     world().repeat("microscope/image_raw", image);
     run(0.2);
   }
   /// Into the middle of the image.
   void clickImage() {
-    user_->click(user_->placeOf(*user_->shown<MicroscopeView>().at(0)));
+    user_->click(user_->placeOf(view()));
     QApplication::processEvents();
     run(0.2);
   }
@@ -65,6 +67,26 @@ class PixelGoalTest : public testing::Test {
     run(0.3);
   }
   bool proposed() { return user_->offered("Cancel"); }
+  MicroscopeView& view() { return *user_->shown<MicroscopeView>().at(0); }
+  /// Of the image on the screen, in the window.
+  QRect shownImage() {
+    const QImage screen = view().grab().toImage();
+    QRect seen;
+    for (int y = 0; y < screen.height(); ++y) {
+      for (int x = 0; x < screen.width(); ++x) {
+        if (screen.pixel(x, y) == kImageColour) seen |= QRect(x, y, 1, 1);
+      }
+    }
+    return seen.translated(view().mapTo(microscope_, QPoint(0, 0)));
+  }
+  int marked() {
+    const QImage screen = view().grab().toImage();
+    int count = 0;
+    for (int y = 0; y < screen.height(); ++y) {
+      for (int x = 0; x < screen.width(); ++x) count += screen.pixel(x, y) == kGoalMark;
+    }
+    return count;
+  }
 
   VirtualSession session_{{"hand.device:=none"}};
   ShownController controller_{session_, "{mode: manual}"};
@@ -94,6 +116,28 @@ TEST_F(PixelGoalTest, TheNeedleIsLedThereAfterGo) {
   EXPECT_FALSE(leading_->active());
   EXPECT_FALSE(proposed());
   EXPECT_TRUE(proposals.newest()->header.stamp.isZero()) << "it is forgotten";
+}
+
+TEST_F(PixelGoalTest, APlaceIsThePixelThatIsSeenThere) {
+  const QRect image = shownImage();
+  EXPECT_EQ(marked(), 0);
+  const QPoint place = image.topLeft() + QPoint(3 * image.width() / 10, 6 * image.height() / 10);
+  user_->click(place);
+  QApplication::processEvents();
+  run(0.2);
+  EXPECT_GT(marked(), 0);
+  click("Go");
+  ASSERT_EQ(leading_->goals.size(), 1u);
+  EXPECT_NEAR(leading_->goals[0].x, kWide * (place.x() + 0.5 - image.left()) / image.width() - 0.5, 0.3);
+  EXPECT_NEAR(leading_->goals[0].y, kHigh * (place.y() + 0.5 - image.top()) / image.height() - 0.5, 0.3);
+}
+
+TEST_F(PixelGoalTest, ADoubleClickProposesNothing) {
+  user_->click(user_->placeOf(view()));
+  QTest::mouseDClick(&view(), Qt::LeftButton, {}, view().rect().center());
+  QApplication::processEvents();
+  run(0.2);
+  EXPECT_FALSE(proposed());
 }
 
 TEST_F(PixelGoalTest, APlaceIsForgottenWhenTheControllerLeavesEnabled) {
