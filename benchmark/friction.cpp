@@ -2,8 +2,11 @@
 // oocyte under a hemisphere.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
+#include <memory>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -16,14 +19,14 @@
 #include "cell/mechanics/symmetric_solver.h"
 #include "cell/model/cell_problem.h"
 #include "cell/model/scene_mesh.h"
-#include "cell/surrogate/surrogate_cell_model.h"
 
 namespace microinjection {
 namespace {
 
 constexpr char kScene[] = MICROINJECTION_SOURCE_DIR "/config/cells/mouse_oocyte_pipette.yaml";
 constexpr double kQuarter = 14e-6;  ///< m, of the diameter
-constexpr double kStep = 0.5e-6, kDeepest = 40e-6, kOut = -1e-6;
+constexpr double kStep = 0.5e-6, kDeepest = 40e-6;
+constexpr double kOut = -1e-6, kFine = 0.02e-6;  ///< beyond first contact, where adhesion's pull has a sharp peak
 
 struct Rubbed {
   double friction;  ///< < 0: it sticks
@@ -50,8 +53,8 @@ struct Way {
 template <int Dim>
 Way drive(CellProblem<Dim>& problem, double deepest) {
   Way way;
-  const auto follow = [&](double from, double to, double& work) {
-    const int steps = static_cast<int>(std::lround(std::abs(to - from) / kStep));
+  const auto follow = [&](double from, double to, double& work, double step = kStep) {
+    const int steps = static_cast<int>(std::lround(std::abs(to - from) / step));
     double last = problem.solve({0, 0, -from}).force.z();
     work = 0;
     for (int i = 1; i <= steps; ++i) {
@@ -69,7 +72,9 @@ Way drive(CellProblem<Dim>& problem, double deepest) {
   double on = 0;
   if (!follow(0, kQuarter, way.given)) return way.given = NAN, way;
   way.quarter = problem.solve({0, 0, -kQuarter}).force.z();
-  if (!follow(kQuarter, kOut, way.back)) way.back = NAN;
+  double pulled = 0;
+  if (!follow(kQuarter, 0, way.back) || !follow(0, kOut, pulled, kFine)) way.back = NAN;
+  way.back += pulled;
   problem.reset();
   if (deepest > kQuarter) follow(0, deepest, on);
   return way;
@@ -110,43 +115,119 @@ void solveAll(PrintedTable& table, const std::string& meshes) {
   }
 }
 
-/// Cells of the shipped families that nobody has solved, served, against their own solutions to a quarter of the
-/// diameter.
+/// Errors of one kind of way.
+class Errors {
+ public:
+  explicit Errors(const char* what) : what_(what) {}
+  void add(double error) { all_.push_back(std::abs(error)); }
+  void tell(PrintedTable& table) {
+    std::sort(all_.begin(), all_.end());
+    const auto at = [&](double share) {
+      return 100 * all_[static_cast<std::size_t>(share * static_cast<double>(all_.size() - 1))];
+    };
+    char row[200];
+    std::snprintf(row, sizeof row, "%s,%zu,%.2g,%.2g,%.2g\n", what_, all_.size(), at(0.5), at(0.9), at(1));
+    if (!all_.empty()) table.add(row);
+  }
+
+ private:
+  const char* what_;
+  std::vector<double> all_;
+};
+
+/// A cell served and solved, along the same way.
+class Pair {
+ public:
+  Pair(const Scene& scene, const std::string& families)
+      : problem_(scene, makeSceneMesh<2>(scene, 1), ElementKind::kP2P0),
+        served_(makeCellModel(scene, "surrogate", {families, {}, {}, {}}, "").cell) {}
+
+  void begin() {
+    problem_.reset();
+    served_->release();
+  }
+  /// Forces along the axis, served and solved; nothing where there is no solution.
+  std::optional<std::array<double, 2>> at(double depth) {
+    const IndentationSolution solved = problem_.solve({0, 0, -depth});
+    const TipForce force = serve(depth);
+    if (!solved.converged || !force.valid) return std::nullopt;
+    return std::array{force.force.z(), solved.force.z()};
+  }
+  double stepTime() {
+    constexpr int kTimed = 10000;
+    const double begin = threadCpuTime();
+    for (int k = 0; k < kTimed; ++k) serve(0.5 - 0.48 * k / kTimed);
+    return (threadCpuTime() - begin) / kTimed;
+  }
+
+ private:
+  TipForce serve(double depth) { return served_->step({0, 0, 1 - depth}, Eigen::Vector3d::UnitZ(), time_ += 1e-3); }
+
+  CellProblem<2> problem_;
+  std::unique_ptr<CellModel> served_;
+  double time_ = 0;
+};
+
+/// Cells of the shipped families that nobody has solved, served, against their own solutions: to a quarter of the
+/// diameter and less, out, and in again from half of the way.
 void family(PrintedTable& table, int members) {
+  constexpr int kSteps = 24;
   const std::string families = MICROINJECTION_SOURCE_DIR "/config/families";
-  const SectionFamily shipped = SectionFamily::load(families + "/friction/homogeneous.yaml");
+  const SectionFamily shipped = SectionFamily::load(families + "/withdrawal/homogeneous.yaml");
   std::mt19937 random(1);
-  std::vector<double> errors, times;
+  Errors in("in"), lost("lost on the way out, over the force at the turn"), out("out, over the force at the turn"),
+      out_there("out, over the force there, a tenth of the turn's or more"), pull("largest pull"),
+      again("in again, over the force at the turn");
+  std::vector<double> times;
   for (int i = 0; i < members; ++i) {
     Eigen::VectorXd at(shipped.dimension());
     for (double& x : at) x = 2 * (random() / 4294967296.0) - 1;
     const Scene scene = shipped.member(at);
-    const ServingPlan plan = planServing(scene, "surrogate", families, "");
-    SurrogateCellModel served(scene, plan.source.data);
-    CellProblem<2> problem(scene, makeSceneMesh<2>(scene, 1), ElementKind::kP2P0);
-    double time = 0;
-    served.step({0, 0, 1 + 1e-3}, Eigen::Vector3d::UnitZ(), time += 1e-3);
-    for (int i = 1; i <= 25; ++i) {
-      const double depth = 0.02 * i;
-      const IndentationSolution solved = problem.solve({0, 0, -depth});
-      if (!solved.converged) break;
-      const TipForce force = served.step({0, 0, 1 - depth}, Eigen::Vector3d::UnitZ(), time += 1e-3);
-      if (force.valid && depth > 0.05) errors.push_back(std::abs(force.force.z() / solved.force.z() - 1));
+    Pair pair(scene, families);
+    for (const double turn : {0.12, 0.28, 0.5}) {
+      pair.begin();
+      std::vector<std::array<double, 2>> on;
+      for (int k = 0; k <= kSteps; ++k) {
+        const auto forces = pair.at(turn * k / kSteps);
+        if (!forces) break;
+        on.push_back(*forces);
+        if (turn * k / kSteps > 0.05) in.add((*forces)[0] / (*forces)[1] - 1);
+      }
+      if (on.size() <= kSteps) continue;
+      const auto way = [&](int from, int to, const auto& use) {
+        for (int k = from; k != to; k += from < to ? 1 : -1) {
+          const auto forces = pair.at(turn * k / kSteps);
+          if (!forces) return false;
+          use(k, *forces);
+        }
+        return true;
+      };
+      const double unit = on.back()[1];
+      const auto again_at = [&](int, const auto& force) { again.add((force[0] - force[1]) / unit); };
+      const auto out_at = [&](int k, const auto& force) {
+        out.add((force[0] - force[1]) / unit);
+        lost.add((on[k][1] - force[1]) / unit);
+        if (force[1] > 0.1 * unit) out_there.add(force[0] / force[1] - 1);
+      };
+      if (!way(kSteps, kSteps / 2, out_at) || !way(kSteps / 2, kSteps, again_at) || !way(kSteps, -1, out_at)) continue;
+      double served = 0, solved = 0;
+      const double step = 0.25 * scene.needle.contact.adhesion_range;
+      for (double depth = -step; depth > -0.1; depth -= step) {
+        const auto forces = pair.at(depth);
+        if (!forces) break;
+        served = std::max(served, -(*forces)[0]);
+        solved = std::max(solved, -(*forces)[1]);
+        if (-(*forces)[1] < 0.5 * solved) break;
+      }
+      if (solved > 0.01 * unit) pull.add(served / solved - 1);
     }
-    constexpr int kTimed = 10000;
-    const double begin = threadCpuTime();
-    for (int k = 0; k < kTimed; ++k)
-      served.step({0, 0, 0.5 + 0.48 * k / kTimed}, Eigen::Vector3d::UnitZ(), time += 1e-3);
-    times.push_back((threadCpuTime() - begin) / kTimed);
+    times.push_back(pair.stepTime());
   }
-  std::sort(errors.begin(), errors.end());
+  table.add("way,forces,median_percent,nine_of_ten,worst\n");
+  for (Errors* errors : {&in, &lost, &out, &out_there, &pull, &again}) errors->tell(table);
   std::sort(times.begin(), times.end());
-  char row[200];
-  std::snprintf(row, sizeof row,
-                "family of %d members: force error median %.3g %%, nine of ten %.3g %%, worst %.3g %%; %zu forces; "
-                "%.3g us a step\n",
-                members, 100 * errors[errors.size() / 2], 100 * errors[errors.size() * 9 / 10], 100 * errors.back(),
-                errors.size(), 1e6 * times[times.size() / 2]);
+  char row[100];
+  std::snprintf(row, sizeof row, "%d members; %.3g us a step on the way out\n", members, 1e6 * times[times.size() / 2]);
   table.add(row);
 }
 

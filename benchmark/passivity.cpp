@@ -222,7 +222,7 @@ class Table {
 
 int main(int argc, char** argv) {
   int draws = 150;
-  std::string blocks = "grid,drawn,held,sliding,loose";
+  std::string blocks = "grid,drawn,adhering,held,sliding,loose";
   for (const microinjection::PiercedCase& cell : microinjection::kPiercedCases) blocks += std::string(",") + cell.name;
   boost::program_options::options_description more;
   more.add_options()("draws", boost::program_options::value(&draws)->default_value(draws),

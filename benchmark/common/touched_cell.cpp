@@ -28,14 +28,21 @@ Scene heldCellScene() {
   return scene;
 }
 
+Scene adheringCellScene() {
+  Scene scene = heldCellScene();
+  scene.holding_pipette.mouth.reset();
+  scene.needle.contact = {"sliding", 0.2, 3e-4, 0.3e-6};
+  return scene;
+}
+
 /// Depth below the first touch (m) to force on the needle along its way out (N).
 using Pressed = std::function<double(double)>;
 
-Pressed heldCell() {
-  const Scene scene = heldCellScene();
+/// As a session serves it.
+Pressed servedCell(const Scene& scene) {
   CellModelConfig config;
   config.families = std::string(MICROINJECTION_SOURCE_DIR) + "/config/families";
-  const std::shared_ptr<CellModel> model = makeCellModel(scene, "surrogate", config, "the held cell").cell;
+  const std::shared_ptr<CellModel> model = makeCellModel(scene, "surrogate", config, "the touched cell").cell;
   return [model, radius = scene.radius(), time = 0.0](double depth) mutable {
     time += kPeriod;
     return model->step({0, 0, radius - depth}, Vector3d::UnitZ(), time).force.z();
@@ -82,6 +89,8 @@ double hertzForce(double depth) {
 
 std::string name(TouchedCell cell) {
   switch (cell) {
+    case TouchedCell::kAdhering:
+      return "adhering";
     case TouchedCell::kHeld:
       return "held";
     case TouchedCell::kSliding:
@@ -94,10 +103,12 @@ std::string name(TouchedCell cell) {
 
 TeleoperationLoop::Touched makeTouchedCell(TouchedCell cell, double stiffness, double pressed) {
   const double deep = kDeep * 40e-6, scale = deep / (pressed / stiffness);
-  const Pressed force = cell == TouchedCell::kHeld      ? heldCell()
-                        : cell == TouchedCell::kSliding ? slidingCell()
-                                                        : looseCell();
-  const double gain = pressed / (cell == TouchedCell::kHeld ? heldCell()(deep) : hertzForce(deep));
+  const bool moves = cell == TouchedCell::kSliding || cell == TouchedCell::kLoose;
+  const Scene scene = cell == TouchedCell::kAdhering ? adheringCellScene() : heldCellScene();
+  const Pressed force = cell == TouchedCell::kSliding ? slidingCell()
+                        : cell == TouchedCell::kLoose ? looseCell()
+                                                      : servedCell(scene);
+  const double gain = pressed / (moves ? hertzForce(deep) : servedCell(scene)(deep));
   return [force, scale, gain](double needle) mutable { return gain * force(-scale * needle); };
 }
 

@@ -1,5 +1,6 @@
 // Prepares the surrogate cell of a scene from converged solutions; see --help.
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -14,9 +15,9 @@
 #include "base/worker_processes.h"
 #include "cell/choice/make_cell_model.h"
 #include "cell/choice/model_choice.h"
-#include "cell/family/family_cell.h"
 #include "cell/family/pierced_family.h"
 #include "cell/family/section_family.h"
+#include "cell/family/withdrawal_family.h"
 #include "cell/model/scene.h"
 #include "cell/model/similarity.h"
 #include "cell/model/solved_branch.h"
@@ -186,11 +187,12 @@ bool isServed(const PrepareArguments& arguments) {
   if (arguments.families.empty() || arguments.again) return false;
   const Scene scene = loadScene(arguments.scene).glued();
   std::string reason;
-  const auto member = findFamilyCell(arguments.families, scene, reason);
+  const bool adheres = scene.needle.contact.adhesion_energy > 0;
+  const std::optional<WithdrawalLoss> loss = findWithdrawal(arguments.families, scene, reason);
   SurrogateSource source;
-  if (member) source.data = member->data, source.text = member->description;
-  if (auto rubbed = member ? std::nullopt : findRubbedCell(scene, arguments.families, reason)) source = *rubbed;
-  const bool exact = source.data && source.data->common_error <= scene.requirements.force_error;
+  if (!adheres || loss) source = findFamilySource(withoutAdhesion(scene), arguments.families, reason);
+  const double error = source.data ? std::max(source.data->common_error, loss ? loss->error() : 0) : 1;
+  const bool exact = error <= scene.requirements.force_error;
   std::printf(exact ? "prepare: served without preparation: %s\n"
                     : "prepare: no family serves the scene as exactly as it asks for: %s\n",
               source.data ? source.text.c_str() : reason.c_str());

@@ -31,14 +31,14 @@ With --family it solves members of a family of cells, each in minutes, and store
 beside NAME.yaml). Every cell inside of the family is then served at once, without a preparation. The members are where
 the prediction from the solved ones is least certain. Several processes with one cache share the work. With --list, --task
 and --gather a job scheduler does it, round by round: see doc/guide/cluster.md. Families of sections
-(config/families/tongues, held, friction, pierced) are solved in the same way, in seconds a member, with --members and --jobs only. A task
+(config/families/tongues, held, friction, withdrawal, pierced) are solved in the same way, in seconds a member, with --members and --jobs only. A task
 that another process solves at the moment ends with status 4: try it again.
 
 Data that are damaged, or of another version, are reported and replaced.
 
 Where the cell has no solution in a part of the range, the range shrinks, which is reported.
 
-Exit status: 0 prepared (or was already); 2 bad usage, a scene that cannot be prepared (adhesion, a viscosity that
+Exit status: 0 prepared (or was already); 2 bad usage, a scene that cannot be prepared (adhesion that no family has, a viscosity that
 does not relax, a sharp disc on a nonlinear cell, tensegrity: the message names it), or data or output that cannot be written
 (the message names the path and the reason; the folder is checked first); 3 a path ends before a fifth of its length: nothing
 is stored.

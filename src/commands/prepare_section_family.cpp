@@ -16,6 +16,7 @@
 #include "cell/family/next_members.h"
 #include "cell/family/pierced_family.h"
 #include "cell/family/tongue_member.h"
+#include "cell/family/withdrawal_family.h"
 #include "commands/family_plan.h"
 #include "commands/path_store.h"
 #include "commands/run_tasks.h"
@@ -36,12 +37,15 @@ std::string sectionMemberFile(const SectionFamily& family, const Eigen::VectorXd
 std::pair<const char*, const char*> toldOf(SectionFamily::Kind kind) {
   if (kind == SectionFamily::Kind::kTongue) return {"the tongue's rise", "; the end"};
   if (kind == SectionFamily::Kind::kPierced) return {"the whole cell's force", "; the pierced one's, on the way in"};
+  if (kind == SectionFamily::Kind::kWithdrawal)
+    return {"the way out of half a radius, over the force there", "; of a twentieth"};
   return {"the force", nullptr};
 }
 
 SectionMember solveMember(const SectionFamily& family, const Eigen::VectorXd& coordinates) {
   if (family.kind() == SectionFamily::Kind::kTongue) return solveTongue(family, coordinates);
   if (family.kind() == SectionFamily::Kind::kPierced) return solvePierced(family, coordinates);
+  if (family.kind() == SectionFamily::Kind::kWithdrawal) return solveWithdrawal(family, coordinates);
   return solveAxisForceRatio(family, coordinates);
 }
 

@@ -175,6 +175,7 @@ CellMoment CellSimulatorNode::moment(const ros::Time& now, const TipForce& force
   moment.force = force;
   moment.contact = cell_->contact();
   moment.solution = solution(now);
+  moment.force_error = cell_->forceError();
   moment.insertion = cell_->insertion();
   moment.setReason(invalid_reason_);
   return moment;

@@ -12,6 +12,7 @@ PunctureConfig onPrepared(PunctureConfig puncture, double length, double force) 
   for (auto& layer : puncture.layers) {
     layer.force /= force;
     layer.depth /= length;
+    layer.toughness_rate.speed /= length;
     layer.dimple_radius /= length;
     layer.gap /= length;
     layer.stiffness *= length / force;

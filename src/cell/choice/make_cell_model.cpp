@@ -13,14 +13,18 @@
 #include "cell/family/family_cell.h"
 #include "cell/family/pierced_family.h"
 #include "cell/family/tongue_family.h"
+#include "cell/family/withdrawal_family.h"
 #include "cell/model/bore_tongue.h"
 #include "cell/model/live_cell.h"
 #include "cell/model/puncturable_cell.h"
 #include "cell/model/solved_branch.h"
+#include "cell/model/withdrawn_cell.h"
 #include "cell/surrogate/surrogate_cell_model.h"
 
 namespace microinjection {
 namespace {
+
+constexpr double kLostAtMost = 0.05;  ///< of the work, by friction on the way out (./dev bench friction)
 
 /// Why a scene's own surrogate data cannot be used, and what to do; `call` prepares them.
 std::string missingReason(const CacheRead<SurrogateData>& read, const std::string& call) {
@@ -35,8 +39,6 @@ std::string missingReason(const CacheRead<SurrogateData>& read, const std::strin
     reason = "the surrogate data " + known->second.first + " (" + read.reason + "); " + known->second.second;
   return reason + call;
 }
-
-}  // namespace
 
 std::optional<SurrogateSource> findRubbedCell(const Scene& scene, const std::string& families, std::string& outside) {
   if (!(scene.needle.contact.friction > 0)) return std::nullopt;
@@ -59,7 +61,21 @@ std::optional<SurrogateSource> findRubbedCell(const Scene& scene, const std::str
   SurrogateSource source;
   source.data = std::move(data);
   source.text = text.str();
+  source.on_axis_only = true;
   return source;
+}
+
+}  // namespace
+
+SurrogateSource findFamilySource(const Scene& scene, const std::string& families, std::string& outside) {
+  if (const std::optional<FamilyCell> member = findFamilyCell(families, scene, outside))
+    return {member->data, member->description, member->family, false};
+  return findRubbedCell(scene, families, outside).value_or(SurrogateSource());
+}
+
+Scene withoutAdhesion(Scene scene) {
+  scene.needle.contact.adhesion_energy = scene.needle.contact.adhesion_range = 0;
+  return scene;
 }
 
 namespace {
@@ -70,19 +86,13 @@ SurrogateSource findSurrogate(const Scene& scene, const std::string& families, c
   const SurrogateRange range = SurrogateRange::standard(scene);
   auto own = SurrogateData::load(scene, range, surrogateFile(scene, SurrogatePlan::plan(scene, range)));
   std::string outside;
-  const std::optional<FamilyCell> member = findFamilyCell(families, scene, outside);
-  SurrogateSource source;
-  if (member) source.family = member->family;
-  if (own && (!member || own.content->common_error <= member->data->common_error)) {
+  SurrogateSource source = findFamilySource(scene, families, outside);
+  if (own && (!source.family || own.content->common_error <= source.data->common_error)) {
     source.data = std::make_shared<const SurrogateData>(std::move(*own.content));
     source.text = "from its own preparation";
-  } else if (member) {
-    source.data = member->data;
-    source.text =
-        member->description + (own || own.state == CacheState::kMissing ? "" : "; " + missingReason(own, call));
-  } else if (auto rubbed = findRubbedCell(scene, families, outside)) {
-    source = std::move(*rubbed);
-    if (own.state != CacheState::kMissing) source.text += "; " + missingReason(own, call);
+    source.on_axis_only = false;
+  } else if (source.data) {
+    if (!own && own.state != CacheState::kMissing) source.text += "; " + missingReason(own, call);
   } else {
     source.text = missingReason(own, call) + (outside.empty() ? "" : "; " + outside);
   }
@@ -168,8 +178,45 @@ void tellOfSuction(const Scene& wanted, const std::string& families, ServingPlan
   plan.reason += note.str();
 }
 
-/// What the scene's needle does to its outermost layer, by the family that has it; else it is solved.
-PiercedBranch branchFor(const Scene& scene, const CellModelConfig& config, std::string& description) {
+/// As planBetween(), for a needle that may rub or adhere: its data have the way in.
+ServingPlan planWaysInAndOut(const Scene& scene, const std::string& model, const std::string& families,
+                             const std::string& call) {
+  const Scene::Contact& contact = scene.needle.contact;
+  const bool adheres = contact.adhesion_energy > 0;
+  if (!adheres && !(contact.friction > 0)) return planBetween(scene, model, families, call);
+  std::string refusal;
+  std::optional<WithdrawalLoss> loss = findWithdrawal(families, scene, refusal);
+  if (adheres && !loss)
+    throw ConfigError("needle/contact/adhesion: must be left out, or be of a cell that a family has: " +
+                      (refusal.empty() ? "there are no families" : refusal));
+  ServingPlan plan;
+  try {
+    plan = planBetween(withoutAdhesion(scene), adheres ? "surrogate" : model, families, call);  // live has no adhesion
+  } catch (const ConfigError& error) {
+    if (!adheres) throw;
+    throw ConfigError(std::string("needle/contact/adhesion: ") + error.what() +
+                      "; prepare the same scene without adhesion: the way in does not feel it");
+  }
+  if (plan.served != Served::kSurrogate) return plan;
+  std::ostringstream note;
+  note.precision(2);
+  if (loss) {
+    note << "; on the way out it has less, with an error of " << 100 * loss->error() << " % of the force at the turn";
+    plan.as_required = plan.as_required && loss->error() <= scene.requirements.force_error;
+  } else {
+    note << "; on the way out a real one has up to " << 100 * kLostAtMost << " % less";
+    if (!refusal.empty()) note << " (" << refusal << ')';
+    plan.as_required = plan.as_required && kLostAtMost <= scene.requirements.force_error;
+  }
+  plan.loss = std::move(loss);
+  plan.reason += note.str();
+  return plan;
+}
+
+/// What the scene's needle does to its outermost layer, by the family that has it; else it is solved. `pierced_error`:
+/// as PuncturableCell has it.
+PiercedBranch branchFor(const Scene& scene, const CellModelConfig& config, std::string& description,
+                        std::optional<double>& pierced_error) {
   std::string refusal;
   if (std::optional<FamilyBranch> found = findFamilyBranch(config.families, scene, refusal)) {
     std::ostringstream text;
@@ -177,6 +224,7 @@ PiercedBranch branchFor(const Scene& scene, const CellModelConfig& config, std::
     text << "; its branches are those of a family, with errors below " << 100 * found->whole_error << " % before and "
          << 100 * found->pierced_error << " % to 4 tip radii behind the onset in nine of ten; ";
     description += text.str() + describePuncture(found->branch, scene);
+    pierced_error = found->pierced_error;
     return std::move(found->branch);
   }
   PiercedBranch solved = storedPiercedBranch(scene, [&](int path, int count) {
@@ -203,9 +251,9 @@ ServingPlan planServing(const Scene& wanted, const std::string& model, const std
   } else if (model == "auto" && scene.cell.tensegrity) {
     plan.reason = "the cell is a tensegrity, solved live";  // its scene has no requirements
   } else {
-    plan = planBetween(scene, model, families, call);
+    plan = planWaysInAndOut(scene, model, families, call);
   }
-  plan.scene = std::make_shared<const Scene>(scene);
+  plan.scene = std::make_shared<const Scene>(plan.loss ? withoutAdhesion(scene) : scene);
   if (wanted.holding_pipette.mouth) tellOfSuction(wanted, families, plan);
   return plan;
 }
@@ -221,11 +269,16 @@ ChosenCellModel makeCellModel(const Scene& wanted, const std::string& model, con
     chosen.description += ": " + explicit_model->description();
     tracker = std::move(explicit_model);
   } else if (plan.served == Served::kSurrogate) {
-    auto surrogate = std::make_unique<SurrogateCellModel>(scene, plan.source.data);
-    if (scene.needle.contact.friction > 0) chosen.unchangeable = "its friction is that of this one only";
-    if (plan.source.family)
+    const bool on_axis_only = plan.source.on_axis_only || plan.glued_error > 0;
+    auto surrogate = std::make_unique<SurrogateCellModel>(
+        scene, plan.source.data, SurrogateCellModel::MoreError{plan.glued_error, on_axis_only});
+    if (scene.needle.contact.friction > 0 || plan.loss)
+      chosen.unchangeable = "its friction and adhesion are those of this one only";
+    else if (plan.source.family)
       chosen.change = std::make_unique<MemberChange>(wanted, plan.source.family, *surrogate, plan.held_family);
     tracker = std::move(surrogate);
+    if (plan.loss)
+      tracker = std::make_unique<WithdrawnCell>(std::move(tracker), std::move(*plan.loss), scene.needle.tip.radius);
   } else {
     std::shared_ptr<const LiveCell> cell;
     try {
@@ -239,13 +292,14 @@ ChosenCellModel makeCellModel(const Scene& wanted, const std::string& model, con
     tracker = std::make_unique<LiveCellModel>(cell, config.live);
   }
   std::optional<PiercedBranch> branch;
+  std::optional<double> pierced_error;
   if (piercedByMechanics(scene)) {
-    branch = branchFor(scene, config, chosen.description);
+    branch = branchFor(scene, config, chosen.description, pierced_error);
     chosen.change.reset();
     chosen.unchangeable = "its hole under the needle is that of this one only";
   }
-  chosen.cell =
-      std::make_unique<PuncturableCell>(scene, std::move(tracker), tongueOf(scene, config.families), std::move(branch));
+  chosen.cell = std::make_unique<PuncturableCell>(scene, std::move(tracker), tongueOf(scene, config.families),
+                                                  std::move(branch), pierced_error);
   return chosen;
 }
 

@@ -2,12 +2,14 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "cell/choice/member_change.h"
 #include "cell/model/cell_model.h"
 #include "cell/model/explicit_cell_model.h"
 #include "cell/model/live_cell_model.h"
+#include "cell/model/withdrawal_loss.h"
 
 namespace microinjection {
 
@@ -25,11 +27,15 @@ struct SurrogateSource {
   std::shared_ptr<const SurrogateData> data;  ///< none: `text` is the reason
   std::string text;                           ///< where they are from
   std::shared_ptr<const FamilyData> family;   ///< that contains the scene; null: none
+  bool on_axis_only = false;                  ///< beside the axis their error is not known
 };
 
-/// Of a needle on the axis that rubs: the data of one that sticks, corrected by the family of friction forces. Nothing:
-/// no family has it, for the reason that `outside` then gives the user.
-std::optional<SurrogateSource> findRubbedCell(const Scene& scene, const std::string& families, std::string& outside);
+/// The data that families have for a scene; of a needle on the axis that rubs, those of one that sticks, corrected by
+/// the family of friction forces. None: no family has it, for the reason that `outside` then gives the user.
+SurrogateSource findFamilySource(const Scene& scene, const std::string& families, std::string& outside);
+
+/// A scene whose needle does not adhere: the way in is the same.
+Scene withoutAdhesion(Scene scene);
 
 enum class Served { kExplicit, kLive, kSurrogate };
 
@@ -40,12 +46,16 @@ struct ServingPlan {
   bool as_required = true;
   bool is_fallback = false;  ///< live, because there are no surrogate data
   SurrogateSource source{};
-  /// What is served in place of the scene: one that suction holds is glued, see Scene::glued().
+  /// What is served in place of the scene: one that suction holds is glued, see Scene::glued(), and a needle that
+  /// adheres does so by `loss`.
   std::shared_ptr<const Scene> scene{};
   double glued_error = 0;  ///< relative, of the force on the axis, that this adds; 0: the scene is itself
   /// Folder of the families by whose held forces the surrogate data are corrected, see AxisForceRatio; empty: they are
   /// not.
   std::string held_family{};
+  /// Of surrogate data, whose force is that of the way in: what a needle that rubs or adheres has less on its way out.
+  /// Nothing: it does neither, or no family has it.
+  std::optional<WithdrawalLoss> loss{};
 };
 
 /// The first half of makeCellModel(), for those who do not serve a moving needle. `call`: the command that prepares the
@@ -63,7 +73,7 @@ struct CellModelConfig {
 /// A scene's cell for a moving needle. The way goes in one direction:
 ///
 ///     model, scene --> plan: explicit | live | surrogate data, own or a family's --> tracker --> PuncturableCell
-///                            (auto: chooseModel() by error and time)
+///                            (auto: chooseModel() by error and time)   WithdrawnCell, if it rubs or adheres
 ///
 /// The plan alone knows files and figures, so that what serves a scene can be read in one place, and building it
 /// cannot change the choice. A model that was requested by name is never replaced: a force of another model than the

@@ -84,6 +84,17 @@ const std::vector<Ratio>& needleRatios() {
          [](Scene& scene, double value) {
            scene.cell.puncture.layers.front().toughness = rounded(value * toughnessUnit(scene));
          }});
+    result.push_back(
+        {"adhesion_root", false, 1,
+         [](const Scene& scene) { return std::sqrt(scene.needle.contact.adhesion_energy / scene.needle.tip.radius); },
+         [](Scene& scene, double value) {
+           scene.needle.contact.adhesion_energy = rounded(value * value * scene.needle.tip.radius);
+         }});
+    result.push_back({"adhesion_range", true, 1,
+                      [](const Scene& scene) { return scene.needle.contact.adhesion_range / scene.needle.tip.radius; },
+                      [](Scene& scene, double value) {
+                        scene.needle.contact.adhesion_range = rounded(value * scene.needle.tip.radius);
+                      }});
     return result;
   }();
   return all;

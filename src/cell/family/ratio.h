@@ -27,9 +27,10 @@ const std::vector<Ratio>& ratios();
 /// and surface_tension. `set` must be called in this order. @pre the scenes have a mouth
 const std::vector<Ratio>& mouthRatios();
 
-/// Ratios that determine a cell under a needle that rubs or pierces it: those of ratios() for one layer, then friction
-/// (Coulomb's coefficient) and toughness (of the outermost layer, over shear modulus and tip's radius). `set` must be
-/// called in this order.
+/// Ratios that determine a cell under a needle that rubs, adheres or pierces it: those of ratios() for one layer, then
+/// friction (Coulomb's coefficient), toughness (of the outermost layer, over shear modulus and tip's radius),
+/// adhesion_root (the root of the energy over modulus and tip's radius) and adhesion_range (over the tip's radius).
+/// `set` must be called in this order.
 const std::vector<Ratio>& needleRatios();
 
 }  // namespace microinjection

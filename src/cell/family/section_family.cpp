@@ -19,13 +19,18 @@ constexpr double kRoundingOfRatio = 1e-9;
 
 struct KindOfSections {
   SectionFamily::Kind kind;
-  const char *key, *text;  ///< of its files, of its data
+  const char *key, *text;           ///< of its files, of its data
+  std::vector<std::string> ratios;  ///< of what a needle does, that it must name
 };
-constexpr KindOfSections kKindsOfSections[] = {
-    {SectionFamily::Kind::kTongue, "tongue", "tongue family "},
-    {SectionFamily::Kind::kHeldForce, "held_force", "held force family "},
-    {SectionFamily::Kind::kFrictionForce, "friction_force", "friction force family "},
-    {SectionFamily::Kind::kPierced, "pierced", "pierced family "}};
+const KindOfSections kKindsOfSections[] = {
+    {SectionFamily::Kind::kTongue, "tongue", "tongue family ", {}},
+    {SectionFamily::Kind::kHeldForce, "held_force", "held force family ", {}},
+    {SectionFamily::Kind::kFrictionForce, "friction_force", "friction force family ", {"friction"}},
+    {SectionFamily::Kind::kWithdrawal,
+     "withdrawal",
+     "withdrawal family ",
+     {"friction", "adhesion_root", "adhesion_range"}},
+    {SectionFamily::Kind::kPierced, "pierced", "pierced family ", {"toughness"}}};
 
 const KindOfSections& factsOf(SectionFamily::Kind kind) {
   return *std::find_if(std::begin(kKindsOfSections), std::end(kKindsOfSections),
@@ -70,12 +75,13 @@ SectionFamily SectionFamily::load(const std::string& path) {
   if (scene && family.hasMouth()) family.checkMouth(reader);
   if (scene && !family.hasMouth()) {
     if (const std::string misfit = family.formMisfit(family.scene_); !misfit.empty()) reader.error("scene", misfit);
-    const bool pierced = family.kind_ == Kind::kPierced;
-    if (!family.names(pierced ? "toughness" : "friction"))
-      reader.error("parameters", std::string("must name ") + (pierced ? "toughness" : "friction"));
-    if (family.names(pierced ? "friction" : "toughness"))
-      reader.error("parameters",
-                   std::string(pierced ? "friction" : "toughness") + " belongs to another kind of family");
+    const std::vector<std::string>& own = factsOf(family.kind_).ratios;
+    for (const char* ratio : {"friction", "toughness", "adhesion_root", "adhesion_range"}) {
+      const bool is_own = std::find(own.begin(), own.end(), ratio) != own.end();
+      if (is_own && !family.names(ratio)) reader.error("parameters", std::string("must name ") + ratio);
+      if (!is_own && family.names(ratio))
+        reader.error("parameters", std::string(ratio) + " belongs to another kind of family");
+    }
   }
   reader.finish();
   return family;
@@ -113,11 +119,24 @@ std::optional<Eigen::VectorXd> SectionFamily::coordinatesOf(const Scene& scene, 
 std::string SectionFamily::formMisfit(const Scene& scene) const {
   if (scene.cell.tensegrity) return "the cell is a tensegrity";
   if (hasMouth() && !scene.holding_pipette.mouth) return "holding_pipette has no mouth";
-  if (kind_ == Kind::kFrictionForce && !(scene.needle.contact.friction > 0)) return "needle/contact/friction is 0";
+  const Scene::Contact& contact = scene.needle.contact;
+  if (kind_ == Kind::kFrictionForce && !(contact.friction > 0)) return "needle/contact/friction is 0";
+  if (kind_ == Kind::kWithdrawal && contact.mode == "sliding" && !(contact.friction > 0))
+    return "needle/contact slides without friction";
   if (kind_ == Kind::kPierced &&
       (scene.cell.puncture.layers.empty() || !std::isfinite(scene.cell.puncture.layers.front().toughness)))
     return "cell/puncture has no toughness";
   return "";
+}
+
+/// Of a scene without dimension; as the border where no other makes a difference.
+double SectionFamily::valueOf(const Family::Parameter& parameter, const Scene& scene) const {
+  const Scene::Contact& contact = scene.needle.contact;
+  const std::string name = parameter.ratio->name;
+  if (name == "friction" && contact.mode == "sticking") return parameter.high;
+  if (name == "adhesion_range" && contact.adhesion_energy == 0) return parameter.low;
+  const double value = parameter.ratio->get(scene);
+  return saturates(parameter) ? std::min(value, parameter.high) : value;
 }
 
 std::string SectionFamily::misfitOf(const Scene& scene, Eigen::VectorXd& coordinates) const {
@@ -128,14 +147,14 @@ std::string SectionFamily::misfitOf(const Scene& scene, Eigen::VectorXd& coordin
   Scene other = withoutDimension(SurrogatePlan::elastic(scene)), own = scene_;
   for (int i = 0; i < dimension(); ++i) {
     const Family::Parameter& each = parameters_[i];
-    const double value = each.ratio->get(other);
-    coordinates[i] = each.coordinate(saturates(each) ? std::min(value, each.high) : value);
+    coordinates[i] = each.coordinate(valueOf(each, other));
   }
   for (const Family::Parameter& constant : constants_) {
     const double value = constant.ratio->get(other);
     if (value < constant.low || (value > constant.high && !saturates(constant))) return constant.text(value);
   }
   // What is left has to be the same.
+  if (kind_ == Kind::kWithdrawal) other.needle.contact.mode = own.needle.contact.mode;
   if (hasMouth()) other.holding_pipette.contact_radius = own.holding_pipette.contact_radius;
   if (kind_ == Kind::kTongue) {
     other.needle = own.needle;

@@ -103,8 +103,9 @@ void SectionFamilyData::prepare() {
 
 void SectionFamilyData::update() {
   if (members_.size() < 2) return;
-  // What is pierced depends on the toughness, the whole cell does not.
-  const int hardest = family_.kind() == SectionFamily::Kind::kPierced ? 1 : 0;
+  // What is pierced depends on the toughness, the whole cell does not; adhesion is most of a shallow way out.
+  const SectionFamily::Kind kind = family_.kind();
+  const int hardest = kind == SectionFamily::Kind::kPierced || kind == SectionFamily::Kind::kWithdrawal ? 1 : 0;
   covariance_ =
       chooseCovariance(points(), [&](const auto& weights) { return columnErrors(members_, hardest, weights); });
   prepare();

@@ -36,7 +36,7 @@ ContactPoint DiscContactCell::contactAt(const Eigen::Vector3d& contact_point, co
 }
 
 LiveCell::Surface DiscContactCell::undeformedSurface() const {
-  return {surface_.vertices, surface_.triangles, onSurface({held_vertices_})};
+  return {surface_.vertices, surface_.triangles, onSurface({held_vertices_}), {}, {}};
 }
 
 std::vector<std::uint32_t> DiscContactCell::onSurface(const TipPatch& patch) const {

@@ -116,19 +116,22 @@ PiercedBranch::State PiercedBranch::at(double depth, double length) const {
   return state;
 }
 
-double PiercedBranch::grown(double depth, double length) const {
+double PiercedBranch::grown(double depth, double length, const Resistance& resistance) const {
+  const auto grows = [&](double at_length) {
+    return at(depth, at_length).release > resistance.tougher * cost_ + resistance.at(at_length);
+  };
   // Beyond the paths the crack has long grown: forces there are no solutions.
   const double from = std::max({length, shortest(), depth - furthest_});
-  if (at(depth, from).release <= cost_) return from;
+  if (!grows(from)) return from;
   const double step = longest() / kLengths;
   double low = from, high = from + step;
-  while (at(depth, high).release > cost_ && high < depth + longest()) {
+  while (grows(high) && high < depth + longest()) {
     low = high;
     high += step;
   }
   for (int i = 0; i < kHalvings; ++i) {
     const double middle = (low + high) / 2;
-    (at(depth, middle).release > cost_ ? low : high) = middle;
+    (grows(middle) ? low : high) = middle;
   }
   return high;
 }

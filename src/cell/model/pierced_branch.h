@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -59,8 +60,20 @@ class PiercedBranch {
   /// Where the needle stands in a hole that is solved there. None: the whole cell's path ends before.
   const std::optional<Onset>& onset() const { return onset_; }
 
-  /// m, of a hole that was `length` long while the needle went on to `depth`. It does not become shorter.
-  double grown(double depth, double length) const;
+  /// What a crack meets besides its cost.
+  struct Resistance {
+    double tougher = 1;    ///< times the cost
+    double stiffness = 0;  ///< N/m, of a membrane that the tip stretches before it
+    double membrane = 0;   ///< m below the surface, undeformed, where that is
+    double at(double length) const { return stiffness * std::max(length - membrane, 0.0); }  ///< N, of the membrane
+  };
+  /// m, of a hole that was `length` long while the needle went on to `depth`. It does not become shorter. The energy of
+  /// a membrane before the tip is a function of the length alone, so that the needle feels it by a deeper dent.
+  double grown(double depth, double length, const Resistance& resistance) const;
+  double grown(double depth, double length) const { return grown(depth, length, {}); }
+
+  /// The same cell with so many times the cost.
+  PiercedBranch tougher(double factor) const { return {whole_, holes_, factor * cost_, barrier_, wall_force_}; }
 
   double shortest() const { return holes_.front().length; }  ///< m
   double longest() const { return holes_.back().length; }    ///< m

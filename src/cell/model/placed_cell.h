@@ -39,6 +39,7 @@ class PlacedCell : public CellModel {
   Insertion insertion() const override { return cell_.insertion(); }
   std::vector<std::string> layers() const override { return cell_.layers(); }
   const std::string& invalidReason() const override { return cell_.invalidReason(); }
+  std::optional<double> forceError() const override { return cell_.forceError(); }
   std::optional<Solution> solution(double time) const override { return cell_.solution(time); }
   std::vector<std::array<int, 3>> triangles() const override { return cell_.triangles(); }
   std::vector<std::uint32_t> held() const override { return cell_.held(); }

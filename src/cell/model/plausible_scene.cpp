@@ -61,6 +61,7 @@ void checkPuncture(const PunctureConfig& puncture, PlausibleCheck& check) {
     check.requireGiven(plausible::kDepth, at + "depth", layer.depth);
     check.requireGiven(plausible::kStrain, at + "strain", layer.strain);
     check.requireGiven(plausible::kToughness, at + "toughness", layer.toughness);
+    check.requireGiven(plausible::kSpeed, at + "toughness_rate/speed", layer.toughness_rate.speed);
     check.require(plausible::kWork, at + "barrier", layer.barrier);
     check.requireGiven(plausible::kLength, at + "dimple_radius", layer.dimple_radius);
     check.requireGiven(plausible::kStiffness, at + "stiffness", layer.stiffness);

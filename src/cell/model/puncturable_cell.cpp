@@ -11,11 +11,15 @@ namespace {
 
 constexpr double kMouth = 1.5;  ///< radii of the tip, of way in which a hole takes in its end
 constexpr int kEnergySteps = 32;
+constexpr int kFirstLengths = 64;       ///< that are tried where a membrane may stop a first hole
+constexpr double kUprightAxis = 0.999;  ///< cosine: the branch is that of an upright needle
+constexpr double kAlone = 1e-6;         ///< of the branch's force
+constexpr double kGrows = 0.99;         ///< of the crack's cost, that the release of a hole is that has just grown
+constexpr double kKnownWay = 4;         ///< tip radii behind the onset, in which the branch's error is known
 
 PunctureConfig punctureOf(const Scene& scene, const std::optional<PiercedBranch>& branch) {
   PunctureConfig config = scene.cell.puncture;
   if (!branch) return config;
-  if (branch->onset()) config.layers.front().force = branch->onset()->force;
   config.shaft.adhesion += config.shaft.coefficient * branch->wallForce();
   return config;
 }
@@ -30,16 +34,20 @@ BoreSuction::Config boreConfig(const Scene& scene) {
 }  // namespace
 
 PuncturableCell::PuncturableCell(const Scene& scene, std::unique_ptr<CellModel> cell, std::optional<BoreTongue> tongue,
-                                 std::optional<PiercedBranch> branch)
+                                 std::optional<PiercedBranch> branch, std::optional<double> pierced_error)
     : config_(punctureOf(scene, branch)),
       tip_(scene.needle.tip),
       radius_(scene.radius()),
       cell_(std::move(cell)),
       shaft_(config_.shaft),
       fading_(config_.relaxation_time),
-      branch_(std::move(branch)) {
+      branch_(std::move(branch)),
+      pierced_error_(pierced_error) {
   invalid_reason_.reserve(200);
   if (tongue) bore_.emplace(boreConfig(scene), std::move(*tongue));
+  if (!branch_) return;
+  crack_.emplace(*branch_, config_.layers.front().toughness_rate);
+  config_.layers.front().force = crack_->onsetForce();
 }
 
 TipForce PuncturableCell::step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time) {
@@ -48,17 +56,36 @@ TipForce PuncturableCell::step(const Eigen::Vector3d& tip, const Eigen::Vector3d
   if (!tip.allFinite() || !axis.allFinite() || !std::isfinite(time)) {
     invalid_reason_ = "the needle's pose is not finite";
     pulse_.reset();
+    force_error_.reset();
     return {false, Eigen::Vector3d::Zero()};
   }
   const Pose pose{tip, axis, time, last_time_ ? std::max(time - *last_time_, 0.0) : 0};
   stepBore(pose);
+  if (crack_) {
+    crack_->step(last_time_ ? (last_tip_ - tip).dot(axis) : 0, pose.duration);
+    config_.layers.front().force = crack_->onsetForce();
+  }
   const TipForce result = computeForce(pose);
+  force_error_ = result.valid ? errorOf(result.force, pose) : std::nullopt;
   work_ = workTo(result.force, tip);
   last_force_ = result.force;
   last_tip_ = tip;
   last_time_ = time;
   pulse_.reset();
   return result;
+}
+
+std::optional<double> PuncturableCell::errorOf(const Eigen::Vector3d& force, const Pose& pose) const {
+  if (!fading_.at(pose.tip, pose.time).isZero(0)) return std::nullopt;
+  if (!hole_) return cell_->contact() ? cell_->forceError() : std::optional(0.0);
+  if (!pierced_error_ || pose.axis.z() < kUprightAxis || mouth_from_ != 0 || !branch_->onset()) return std::nullopt;
+  const double depth = insertion_.depth, length = holes_[*hole_].length;
+  const PiercedBranch::State state = branch_->at(depth, length);
+  const PiercedBranch::Resistance resistance = resistanceBefore();
+  const double cost = resistance.tougher * branch_->cost() + resistance.at(length);
+  const bool grows = state.release > kGrows * cost && depth < branch_->onset()->depth + kKnownWay * tip_.radius;
+  const bool alone = (force - state.force * pose.axis).norm() < kAlone * std::abs(state.force);
+  return grows && alone ? std::optional(*pierced_error_ * std::abs(state.force)) : std::nullopt;
 }
 
 /// What has come before the mouth in the last step is drawn in.
@@ -135,8 +162,7 @@ TipForce PuncturableCell::contactForce(const Pose& pose) {
   opened.position = contact->contact_point;
   const double work = workTo(result.force, pose.tip);
   if (branch_) {
-    const double first = branch_->onset() ? branch_->onset()->length : branch_->shortest();
-    opened.length = branch_->grown((opened.position - pose.tip).dot(pose.axis), first);
+    opened.length = firstLength((opened.position - pose.tip).dot(pose.axis));
     loseToBranch(opened, result.force, work, pose);
   } else {
     fading_.start(result.force, pose.tip, work, pose.time);
@@ -151,13 +177,27 @@ TipForce PuncturableCell::contactForce(const Pose& pose) {
   return result;
 }
 
+/// Of the hole that an onset makes at this depth: a membrane in its way may stop it.
+double PuncturableCell::firstLength(double depth) const {
+  const double onset = std::isfinite(crack_->onsetLength()) ? crack_->onsetLength() : branch_->shortest();
+  PiercedBranch::Resistance resistance{crack_->tougher()};
+  if (layerCount() > 1) resistance = {crack_->tougher(), config_.layers[1].stiffness, gapsTo(1)};
+  const double least = std::clamp(resistance.membrane, branch_->shortest(), std::max(onset, branch_->shortest()));
+  const double step = (onset - least) / kFirstLengths;
+  double length = onset;
+  for (int i = 0; i < kFirstLengths && resistance.at(length) > 0; ++i, length -= step) {
+    if (branch_->at(depth, length).release > resistance.tougher * branch_->cost() + resistance.at(length)) break;
+  }
+  return branch_->grown(depth, std::max(length, least), resistance);
+}
+
 void PuncturableCell::loseToBranch(const PunctureHoles::Hole& opened, const Eigen::Vector3d& force, double work,
                                    const Pose& pose) {
   const double depth = (opened.position - pose.tip).dot(pose.axis);
   mouth_from_ = 0;
   if (openingEnergy(depth, opened.length) > work) mouth_from_ = depth;
   const double released = branch_->whole(depth).energy - branch_->at(depth, opened.length).energy -
-                          branch_->cost() * opened.length - branch_->barrier();
+                          crack_->tougher() * branch_->cost() * opened.length - branch_->barrier();
   const double kept = work - openingEnergy(depth, opened.length);
   fading_.start(force - openingForce(depth, opened.length) * pose.axis, pose.tip, std::min(released, kept), pose.time);
 }
@@ -178,6 +218,10 @@ Eigen::Vector3d PuncturableCell::forceInside(const Pose& pose) {
   const Eigen::Vector3d shaft = shaft_.step(pose.tip, pose.axis, length, pose.duration);
   const Eigen::Vector3d stays = branch_ ? Eigen::Vector3d(shaft + pierce(pose) * pose.axis) : shaft;
   Eigen::Vector3d others = fading_.at(pose.tip, pose.time);
+  if (branch_ && !isThrough()) {
+    failByBranch(others + stays, pose);
+    return others + stays;
+  }
   if (isThrough()) {
     coverBore(layerCount());
     return others + stays;
@@ -188,19 +232,42 @@ Eigen::Vector3d PuncturableCell::forceInside(const Pose& pose) {
   const double left = strength_ * strength();
   others += std::min(push, left * layer.force) * pose.axis;
   if (drawn_through_ || fails(layer, push, pushed, left)) {
-    const double stored = branch_ ? openingEnergy(insertion_.depth, holes_[*hole_].length) : 0;
-    fading_.start(others, pose.tip, workTo(others + stays, pose.tip) - stored, pose.time);
+    fading_.start(others, pose.tip, workTo(others + stays, pose.tip), pose.time);
     failLayer(pose);
   }
   return others + stays;
 }
 
+/// The membrane before the tip, which the needle feels through the branch. When it fails the hole grows at once, and
+/// what the needle then feels less fades.
+void PuncturableCell::failByBranch(const Eigen::Vector3d& force, const Pose& pose) {
+  PunctureHoles::Hole& hole = holes_[*hole_];
+  const Layer& layer = config_.layers[hole.layers];
+  const double depth = insertion_.depth;
+  const PiercedBranch::Resistance resistance = resistanceBefore();
+  // No more than what the cell presses the tip with: a needle that goes back leaves the membrane.
+  const double pressed = branch_->at(depth, hole.length).release - resistance.tougher * branch_->cost();
+  const double push = std::clamp(pressed, 0.0, resistance.at(hole.length));
+  coverBore(push > 0 ? hole.layers : -1);
+  if (!drawn_through_ && !fails(layer, push, push / layer.stiffness, strength_ * strength())) return;
+  const double before = openingForce(depth, hole.length), work = workTo(force, pose.tip);
+  failLayer(pose);
+  pierce(pose);
+  const double lost = before - openingForce(depth, hole.length), stored = openingEnergy(depth, hole.length);
+  fading_.start(fading_.at(pose.tip, pose.time) + lost * pose.axis, pose.tip, work - stored, pose.time);
+}
+
 double PuncturableCell::pierce(const Pose& pose) {
   PunctureHoles::Hole& hole = holes_[*hole_];
   const double depth = insertion_.depth;
-  hole.length = branch_->grown(depth, hole.length);
+  hole.length = branch_->grown(depth, hole.length, resistanceBefore());
   cell_->step(pose.tip + std::min(hole.length, depth) * pose.axis, pose.axis, pose.time);
   return openingForce(depth, hole.length);
+}
+
+PiercedBranch::Resistance PuncturableCell::resistanceBefore() const {
+  if (isThrough()) return {crack_->tougher()};
+  return {crack_->tougher(), config_.layers[holes_[*hole_].layers].stiffness, next_layer_depth_};
 }
 
 /// A needle that has made the hole stands in it with the whole of its force.
@@ -219,8 +286,7 @@ double PuncturableCell::openingEnergy(double depth, double length) const {
 
 void PuncturableCell::enter(int hole, const Pose& pose) {
   hole_ = hole;
-  next_layer_depth_ = 0;
-  for (int i = 1; i <= std::min(holes_[hole].layers, layerCount() - 1); ++i) next_layer_depth_ += config_.layers[i].gap;
+  next_layer_depth_ = gapsTo(holes_[hole].layers);
   failed_at_ = -std::numeric_limits<double>::infinity();
   shaft_.enter(pose.tip);
   insertion_.inside = true;
@@ -244,8 +310,14 @@ void PuncturableCell::failLayer(const Pose& pose) {
   insertion_.layers_punctured = ++holes_[*hole_].layers;
   insertion_.punctured = true;
   failed_at_ = pose.time;
-  if (branch_ && isThrough()) next_layer_depth_ = 0;  // the shaft touches the wall of the whole hole
-  if (!isThrough()) next_layer_depth_ = insertion_.depth + config_.layers[holes_[*hole_].layers].gap;
+  if (branch_) next_layer_depth_ = isThrough() ? 0 : gapsTo(holes_[*hole_].layers);  // the shaft touches the whole wall
+  if (!branch_ && !isThrough()) next_layer_depth_ = insertion_.depth + config_.layers[holes_[*hole_].layers].gap;
+}
+
+double PuncturableCell::gapsTo(int layer) const {
+  double sum = 0;
+  for (int i = 1; i <= std::min(layer, layerCount() - 1); ++i) sum += config_.layers[i].gap;
+  return sum;
 }
 
 bool PuncturableCell::fails(const Layer& layer, double push, double indentation, double strength) {
@@ -279,6 +351,7 @@ double PuncturableCell::clearance(const Eigen::Vector3d& tip, const Eigen::Vecto
 
 void PuncturableCell::release() {
   cell_->release();
+  if (crack_) crack_->reset();
   hole_.reset();
   pulse_.reset();
   coverBore(-1);

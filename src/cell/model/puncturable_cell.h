@@ -11,6 +11,7 @@
 #include "cell/model/aspirated_membrane.h"
 #include "cell/model/bore_suction.h"
 #include "cell/model/cell_model.h"
+#include "cell/model/crack_speed.h"
 #include "cell/model/fading_force.h"
 #include "cell/model/pierced_branch.h"
 #include "cell/model/piezo_stroke.h"
@@ -38,13 +39,16 @@ namespace microinjection {
 ///
 /// With a PiercedBranch the outermost layer is a solid of known toughness. It fails at the force of the branch's onset,
 /// and the needle then feels the branch's force along the pipette: the hole grows with the needle, the dent stays as
-/// deep as the branch has it, and its wall rubs on the shaft. The branch is that of a needle on the axis; elsewhere its
-/// depth is counted along the pipette. Where the needle enters a hole, the force grows from nothing. It does so, too,
-/// where a layer fails before the needle has given the energy that the branch has stored there: it was drawn through,
-/// a piezo has broken it, or it had only resealed. Each further layer is a linear spring along the pipette from the
-/// point where the tip meets it. It was dented together with the earlier layers and lies its gap ahead of the tip when
-/// they fail. It stays there while the needle is in the cell; after the needle has left, all layers are at their gaps
-/// below the surface. In the cell, ShaftResistance acts on the shaft. The cytoplasm begins at the innermost layer.
+/// deep as the branch has it, and its wall rubs on the shaft. A layer that is tougher for a faster needle (CrackSpeed)
+/// fails at another force in each step. The branch is that of a needle on the axis; elsewhere its
+/// depth is counted along the pipette. A membrane behind it lies below the surface at rest by its gap, and goes with
+/// the cell: the tip meets it when the hole has come there, and presses on it through the cell's dent (Resistance).
+/// Where the needle enters a hole, the force grows from nothing. It does so, too, where a layer fails before the needle
+/// has given the energy that the branch has stored there: it was drawn through, a piezo has broken it, or it had only
+/// resealed. Each further layer is a linear spring along the pipette from the point where the tip meets it. It was
+/// dented together with the earlier layers and lies its gap ahead of the tip when they fail. It stays there while the
+/// needle is in the cell; after the needle has left, all layers are at their gaps below the surface. In the cell,
+/// ShaftResistance acts on the shaft. The cytoplasm begins at the innermost layer.
 ///
 /// A tip in a hole is in the cell until it leaves through the hole, or beside it off the cell. A
 /// needle line that passes within the tip's radius of a hole meets the next intact layer there;
@@ -66,9 +70,9 @@ class PuncturableCell : public CellModel {
   /// `cell`: the model of the same scene's cell without a puncture. @pre scene.validate() does not throw
   /// `tongue`: of a scene whose needle has a bore, see solveBoreTongue(). Without it nothing is drawn in.
   /// `branch`: of a scene whose outermost layer has a toughness, see solvePiercedBranch(). Without it that layer does
-  /// not fail.
+  /// not fail. `pierced_error`: relative, of the branch's force behind the onset: one of ten has more.
   PuncturableCell(const Scene& scene, std::unique_ptr<CellModel> cell, std::optional<BoreTongue> tongue = {},
-                  std::optional<PiercedBranch> branch = {});
+                  std::optional<PiercedBranch> branch = {}, std::optional<double> pierced_error = {});
 
   /// O(1), apart from the inner cell; does not allocate or lock.
   TipForce step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time) override;
@@ -83,6 +87,8 @@ class PuncturableCell : public CellModel {
   Insertion insertion() const override { return insertion_; }
   std::vector<std::string> layers() const override;
   const std::string& invalidReason() const override;
+  /// In a hole, of a branch alone: what fades, springs and friction have none that is known.
+  std::optional<double> forceError() const override { return force_error_; }
   std::optional<Solution> solution(double time) const override;
   std::vector<std::array<int, 3>> triangles() const override { return cell_->triangles(); }
   std::vector<std::uint32_t> held() const override { return cell_->held(); }
@@ -102,6 +108,11 @@ class PuncturableCell : public CellModel {
   TipForce contactForce(const Pose& pose);
   void followRadius();  ///< moves the holes with a surface whose radius has changed
   Eigen::Vector3d forceInside(const Pose& pose);
+  std::optional<double> errorOf(const Eigen::Vector3d& force, const Pose& pose) const;
+  double firstLength(double depth) const;              ///< m
+  PiercedBranch::Resistance resistanceBefore() const;  ///< of the crack, before the tip in its hole
+  void failByBranch(const Eigen::Vector3d& force, const Pose& pose);
+  double gapsTo(int layer) const;  ///< m, of all before it and its own, at rest
   /// N along the pipette, of the branch, whose hole grows; and the dent that is drawn.
   double pierce(const Pose& pose);
   double openingForce(double depth, double length) const;   ///< N along the pipette, of the branch
@@ -142,6 +153,8 @@ class PuncturableCell : public CellModel {
   BoreLine line_;
   std::optional<PiezoPulse> pulse_;  ///< of the next step
   std::optional<PiercedBranch> branch_;
+  std::optional<CrackSpeed> crack_;  ///< of the branch
+  std::optional<double> pierced_error_, force_error_;
   double mouth_from_ = 0;  ///< m below the surface, where the needle has entered the hole by the branch
   std::optional<BoreSuction> bore_;
   std::optional<AspiratedMembrane> membrane_;  ///< of the layer before the mouth that suction can break

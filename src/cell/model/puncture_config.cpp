@@ -8,11 +8,19 @@
 namespace microinjection {
 namespace {
 
+const Range kRateExponents = Range::closed(0.01, 2);
+
 void readToughness(ConfigReader& reader, PunctureConfig::Layer& layer) {
   readQuantity(reader, "toughness", layer.toughness, Range::positive(), "J/m^2");
   readQuantity(reader, "barrier", layer.barrier, Range::nonNegative(), "J");
-  if (reader.has("barrier") && !reader.has("toughness"))
-    reader.error("barrier", "must be left out: it belongs to toughness only");
+  for (const char* key : {"barrier", "toughness_rate"}) {
+    if (reader.has(key) && !reader.has("toughness"))
+      reader.error(key, "must be left out: it belongs to toughness only");
+  }
+  if (!reader.has("toughness_rate")) return;
+  ConfigReader rate = reader.section("toughness_rate");
+  readQuantity(rate, "speed", layer.toughness_rate.speed, Range::positive(), "m/s", ConfigReader::kRequired);
+  readQuantity(rate, "exponent", layer.toughness_rate.exponent, kRateExponents, "", ConfigReader::kRequired);
 }
 
 void readLayer(ConfigReader reader, bool outermost, PunctureConfig::Layer& layer) {
@@ -56,6 +64,9 @@ void checkMembrane(const PunctureConfig::Layer& layer, const std::string& path, 
   errors.require(layer.depth > 0, path + "depth", layer.depth, " m", "positive (m)");
   errors.require(layer.strain > 0, path + "strain", layer.strain, "", "positive");
   errors.require(layer.toughness > 0, path + "toughness", layer.toughness, " J/m^2", "positive (J/m^2)");
+  errors.require(layer.toughness_rate.speed > 0, path + "toughness_rate/speed", layer.toughness_rate.speed, " m/s",
+                 "positive (m/s)");
+  errors.require(kRateExponents, path + "toughness_rate/exponent", layer.toughness_rate.exponent, "");
   errors.require(Range::nonNegative(), path + "barrier", layer.barrier, " J");
   errors.require(std::isinf(layer.strain) || (std::isfinite(layer.dimple_radius) && layer.dimple_radius > tip_radius),
                  path + "dimple_radius", layer.dimple_radius, " m", "above needle/tip/radius");
@@ -88,14 +99,15 @@ void PunctureConfig::read(ConfigReader reader) {
       readLayer(layer, layers.size() == 1, layers.back());
     }
     if (layers.empty()) reader.error("layers", "must have at least one layer");
-    for (const char* key : {"force", "toughness", "barrier"}) {
+    for (const char* key : {"force", "toughness", "toughness_rate", "barrier"}) {
       if (reader.has(key)) reader.error(key, "must be left out where there are layers: each has its own");
     }
-  } else if (reader.has("force") && reader.has("toughness")) {
-    reader.error("toughness", "must be left out where the force of the puncture is given");
+  } else if (reader.has("force") && (reader.has("toughness") || reader.has("toughness_rate"))) {
+    reader.error(reader.has("toughness") ? "toughness" : "toughness_rate",
+                 "must be left out where the force of the puncture is given");
   } else if (reader.has("force")) {
     readQuantity(reader, "force", layers.emplace_back().force, Range::positive(), "N");
-  } else if (reader.has("toughness") || reader.has("barrier")) {
+  } else if (reader.has("toughness") || reader.has("toughness_rate") || reader.has("barrier")) {
     readToughness(reader, layers.emplace_back());
   }
   readShaft(reader.section("shaft"), shaft);

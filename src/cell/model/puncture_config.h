@@ -14,6 +14,11 @@ namespace microinjection {
 /// Failure of a cell's membranes under the needle, and the resistance of its shaft afterwards: a
 /// scene's cell/puncture.
 struct PunctureConfig {
+  /// How the toughness grows with the needle's speed, see CrackSpeed.
+  struct ToughnessRate {
+    double speed = std::numeric_limits<double>::infinity();  ///< m/s, at which it is twice that of a slow needle
+    double exponent = 1;
+  };
   /// A membrane. It fails when one of its limits is reached; the others are infinite.
   struct Layer {
     std::string name = "zona";
@@ -22,6 +27,7 @@ struct PunctureConfig {
     double strain = std::numeric_limits<double>::infinity();  ///< nominal, see strainAt()
     /// J/m^2, of crack: the solid is pierced by mechanics (PiercedBranch), of the outermost layer only; infinite: not.
     double toughness = std::numeric_limits<double>::infinity();
+    ToughnessRate toughness_rate;
     double barrier = 0;        ///< J, with toughness: beside the crack, to begin a hole
     double dimple_radius = 0;  ///< m, with strain: outer radius of the dent, from the pipette's axis
     double stiffness = 0;      ///< N/m along the pipette; 0 for the outermost layer, whose force is the cell's

@@ -12,17 +12,24 @@ namespace {
 constexpr char kBeside[] = "the tip is beside the range that the cell was prepared for: the force fades";
 constexpr char kTooDeep[] = "the tip is deeper than the cell was prepared for: withdraw it";
 constexpr char kTooFarOut[] = "the tip touched the cell further from its pole than what was prepared";
-constexpr double kTremor = 0.1e-6;  ///< m, by which a needle at rest may move deeper
-constexpr double kRest = 0.1;       ///< s
-constexpr std::size_t kKept = 16;   ///< cells, for the thread that draws
-constexpr double kUpright = 0.999;  ///< cosine: within 2.5 degrees of the prepared direction
+constexpr double kTremor = 0.1e-6;      ///< m, by which a needle at rest may move deeper
+constexpr double kRest = 0.1;           ///< s
+constexpr std::size_t kKept = 16;       ///< cells, for the thread that draws
+constexpr double kOnAxisAngle = 0.035;  ///< rad, of the contact point
+constexpr double kOnAxisTips = 0.1;     ///< tip radii, sideways
+constexpr double kUpright = 0.999;      ///< cosine: within 2.5 degrees of the prepared direction
 
 }  // namespace
 
 SurrogateCellModel::SurrogateCellModel(const Scene& scene, std::shared_ptr<const SurrogateData> cell)
+    : SurrogateCellModel(scene, std::move(cell), MoreError()) {}
+
+SurrogateCellModel::SurrogateCellModel(const Scene& scene, std::shared_ptr<const SurrogateData> cell,
+                                       const MoreError& error)
     : needle_(std::make_unique<SurrogateContact>(scene, cell)),
       memory_(scene.cell.material().viscoelasticity.prony),
-      served_{{std::make_shared<const Scene>(scene), cell}} {
+      served_{{std::make_shared<const Scene>(scene), cell}},
+      more_error_(error) {
   invalid_reason_.reserve(200);
 }
 
@@ -47,6 +54,7 @@ SurrogateCellModel::Served SurrogateCellModel::served(const SurrogateData* cell)
 
 TipForce SurrogateCellModel::invalidForce(const char* reason) {
   invalid_reason_ = reason;
+  force_error_.reset();
   return {false, Eigen::Vector3d::Zero()};
 }
 
@@ -56,6 +64,7 @@ void SurrogateCellModel::release() {
   memory_.reset();
   limit_.reset();
   invalid_reason_.clear();
+  force_error_.reset();
   shape_.write(needle_.felt().shape());
 }
 
@@ -65,8 +74,20 @@ TipForce SurrogateCellModel::step(const Eigen::Vector3d& tip, const Eigen::Vecto
   }
   TipForce force = computeForce(tip, axis, std::max(0.0, time - time_));
   time_ = time;
+  force_error_ = errorOf(force, axis);
   shape_.write(needle_.felt().shape());
   return force;
+}
+
+std::optional<double> SurrogateCellModel::errorOf(const TipForce& force, const Eigen::Vector3d& axis) const {
+  if (!force.valid || !invalid_reason_.empty() || changing_) return std::nullopt;
+  if (!contact_) return 0;
+  const SurrogateContact& felt = needle_.felt();
+  const double beside = (contact_->displacement + contact_->indentation * axis).norm();
+  const bool on_axis =
+      felt.contactFrame()->angle < kOnAxisAngle && beside < kOnAxisTips * felt.scene().needle.tip.radius;
+  if (more_error_.on_axis_only && !on_axis) return std::nullopt;
+  return (felt.cell()->common_error + more_error_.more) * force.force.norm();
 }
 
 /// An invalid force holds the needle. After a rest, the hand may withdraw it, but not push it
@@ -88,6 +109,7 @@ TipForce SurrogateCellModel::computeForce(const Eigen::Vector3d& tip, const Eige
   const ChangingContact::Result prepared = needle_.step(tip, duration);
   const std::optional<ContactFrame>& frame = needle_.felt().contactFrame();
   stiffness_ = prepared.stiffness;
+  changing_ = prepared.changing;
   if (!frame) {
     contact_.reset();
     memory_.reset();

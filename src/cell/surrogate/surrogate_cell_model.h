@@ -32,8 +32,15 @@ namespace microinjection {
 /// freed by the next change(), in the thread that calls it.
 class SurrogateCellModel : public CellModel {
  public:
+  /// What the error of the data does not have in it.
+  struct MoreError {
+    double more = 0;            ///< relative, to be added
+    bool on_axis_only = false;  ///< beside the axis no error is known
+  };
+
   /// `cell`: prepared for this scene, in SI units. @pre SurrogatePlan::check(scene) does not throw
   SurrogateCellModel(const Scene& scene, std::shared_ptr<const SurrogateData> cell);
+  SurrogateCellModel(const Scene& scene, std::shared_ptr<const SurrogateData> cell, const MoreError& error);
 
   TipForce step(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double time) override;
 
@@ -46,6 +53,7 @@ class SurrogateCellModel : public CellModel {
   const std::optional<Contact>& contact() const override { return contact_; }
   std::optional<double> radius() const override { return needle_.felt().radius(); }
   const std::string& invalidReason() const override { return invalid_reason_; }
+  std::optional<double> forceError() const override { return force_error_; }
   std::optional<Solution> solution(double time) const override;
   std::vector<std::array<int, 3>> triangles() const override;
   std::vector<std::uint32_t> held() const override;
@@ -55,6 +63,7 @@ class SurrogateCellModel : public CellModel {
   TipForce computeForce(const Eigen::Vector3d& tip, const Eigen::Vector3d& axis, double duration);
   TipForce invalidForce(const char* reason);
   bool continuesBelow(bool too_deep, double duration);
+  std::optional<double> errorOf(const TipForce& force, const Eigen::Vector3d& axis) const;
 
   /// A cell that is or was served.
   struct Served {
@@ -72,9 +81,12 @@ class SurrogateCellModel : public CellModel {
   double rested_ = 0;                                    ///< s, without moving deeper there
   Eigen::Matrix3d stiffness_ = Eigen::Matrix3d::Zero();  ///< N/m
   std::string invalid_reason_;
+  std::optional<double> force_error_;           ///< N
+  bool changing_ = false;                       ///< from one cell to another
   LatestValue<SurrogateContact::Shape> shape_;  ///< from the thread that steps to the one that draws
   std::mutex served_mutex_;                     ///< of the ordinary threads; the one that steps never takes it
   std::vector<Served> served_;                  ///< the last few, newest last
+  MoreError more_error_;
 };
 
 }  // namespace microinjection

@@ -124,6 +124,7 @@ void CellStatePublisher::publish(const CellMoment& moment) {
     state.tip_displacement = toMessage<geometry_msgs::Vector3>(moment.contact->displacement);
   }
   state.force = toMessage<geometry_msgs::Vector3>(moment.force.force);
+  state.force_error = moment.force_error.value_or(-1);
   state.punctured = moment.insertion.punctured;
   state.layers_punctured = static_cast<std::uint32_t>(moment.insertion.layers_punctured);
   state.inside = moment.insertion.inside;

@@ -22,6 +22,7 @@ struct CellMoment {
   TipForce force;
   std::optional<CellModel::Contact> contact;
   std::optional<CellModel::Solution> solution;
+  std::optional<double> force_error;  ///< N
   CellModel::Insertion insertion;
   bool valid = true;
   std::array<char, 200> reason{};  ///< why the force is invalid, truncated

@@ -34,9 +34,12 @@ ServedForces::ServedForces(std::shared_ptr<const Scene> scene, const std::string
   if (model != "auto" && model != "surrogate" && model != "live")
     throw ConfigError("model = " + model + ": must be one of: auto, surrogate, live");
   const ServingPlan plan = planServing(*scene_, model, families, "prepare --scene with the scene's file");
+  const std::shared_ptr<const Scene> planned = scene_;
   scene_ = plan.scene;
   glued_error_ = plan.glued_error;
-  description_ = plan.reason;
+  if (planned->needle.contact.adhesion_energy > 0 && plan.loss)
+    throw ConfigError("needle/contact/adhesion: must be left out: these forces are those of the way in");
+  description_ = plan.reason + (plan.loss ? "; these forces are those of the way in" : "");
   family_ = plan.source.family;
   if (plan.served == Served::kSurrogate) {
     data_ = plan.source.data;

@@ -258,6 +258,25 @@ TEST_F(ServeNeedle, FrictionOnTheAxisIsServedByTheShippedFamilies) {
   EXPECT_TRUE(has(beside.description, "friction on the axis only")) << beside.description;
 }
 
+TEST_F(ServeNeedle, AdhesionIsServedByTheShippedFamilies) {
+  Scene adhering = pipette();
+  adhering.needle.contact = {"sliding", 0.2, 1e-3, 0.1e-6};
+  CellModelConfig config;
+  config.families = MICROINJECTION_SOURCE_DIR "/config/families";
+  const ChosenCellModel served = makeCellModel(adhering, "auto", config, "a.yaml");
+  EXPECT_TRUE(has(served.description, "on the way out it has less, with an error of")) << served.description;
+  auto force = [&, time = 0.0](double depth) mutable {
+    return served.cell->step({0, 0, adhering.radius() - depth}, Eigen::Vector3d::UnitZ(), time += 0.01).force.z();
+  };
+  for (const double depth : {-1e-6, 4e-6, 9e-6}) force(depth);
+  EXPECT_NEAR(force(14e-6), 1.290e-6, 0.02 * 1.290e-6);  // ./dev bench friction
+  double pull = 0;
+  for (double depth = 14e-6; depth > -2e-6; depth -= 0.05e-6) pull = std::max(pull, -force(depth));
+  EXPECT_NEAR(pull, 15.0e-9, 1e-9);  // ./dev bench friction
+  EXPECT_TRUE(has(refusal(adhering, "live"), "needle/contact/adhesion: must be left out"));
+  EXPECT_TRUE(has(refusal(adhering, "auto"), "needle/contact/adhesion: must be left out, or be of a cell"));
+}
+
 TEST_F(ServeNeedle, APiercedCellIsServedByTheShippedFamily) {
   const Scene scene = loadScene(MICROINJECTION_SOURCE_DIR "/config/cells/mouse_oocyte_tough.yaml");
   CellModelConfig config;

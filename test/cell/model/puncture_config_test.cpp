@@ -47,10 +47,15 @@ TEST(PunctureConfig, ReadsEveryKey) {
 
 TEST(PunctureConfig, ReadsToughness) {
   const PunctureConfig shorthand =
-      parseScene(with("{toughness: 2.5, barrier: 1e-12, shaft: {coefficient: 0.3}}"), "scene.yaml").cell.puncture;
+      parseScene(with("{toughness: 2.5, toughness_rate: {speed: 1e-4, exponent: 0.5}, barrier: 1e-12, "
+                      "shaft: {coefficient: 0.3}}"),
+                 "scene.yaml")
+          .cell.puncture;
   ASSERT_EQ(shorthand.layers.size(), 1u);
   EXPECT_EQ(shorthand.layers[0].toughness, 2.5);
   EXPECT_EQ(shorthand.layers[0].barrier, 1e-12);
+  EXPECT_EQ(shorthand.layers[0].toughness_rate.speed, 1e-4);
+  EXPECT_EQ(shorthand.layers[0].toughness_rate.exponent, 0.5);
   EXPECT_TRUE(std::isinf(shorthand.layers[0].force));
   EXPECT_EQ(shorthand.shaft.coefficient, 0.3);
   const PunctureConfig layers = parseScene(with("{layers: [{name: zona, toughness: 4}]}"), "scene.yaml").cell.puncture;
@@ -60,6 +65,11 @@ TEST(PunctureConfig, ReadsToughness) {
 TEST(PunctureConfig, ToughnessIsOfTheOutermostLayerAndAlone) {
   expectIn(errorsOf(with("{force: 1e-6, toughness: 1}")), {"cell/puncture/toughness = 1: must be left out"});
   expectIn(errorsOf(with("{barrier: 1e-12}")), {"cell/puncture/barrier = 1e-12: must be left out"});
+  expectIn(errorsOf(with("{force: 1e-6, toughness_rate: {speed: 1e-4, exponent: 1}}")),
+           {"cell/puncture/toughness_rate"});
+  expectIn(errorsOf(with("{toughness: 1, toughness_rate: {speed: 0}}")),
+           {"cell/puncture/toughness_rate/speed = 0: must be a number in (0, inf) m/s",
+            "cell/puncture/toughness_rate/exponent is missing"});
   expectIn(errorsOf(with("{toughness: 0}")), {"cell/puncture/toughness = 0: must be a number in (0, inf) J/m^2"});
   expectIn(errorsOf(with("{layers: [{name: zona, toughness: 1, force: 1e-6}, {name: b, toughness: 1, stiffness: 1}]}")),
            {"cell/puncture/layers/0/name = zona: must have one of force",

@@ -36,11 +36,13 @@ inline PunctureConfig oocyte() {
 /// A needle that is driven into a puncturable spring.
 class PunctureDrive {
  public:
-  explicit PunctureDrive(const PunctureConfig& puncture, double rate = 1000, std::optional<PiercedBranch> branch = {})
+  explicit PunctureDrive(const PunctureConfig& puncture, double rate = 1000, std::optional<PiercedBranch> branch = {},
+                         std::optional<double> pierced_error = {})
       : step_(1 / rate) {
     auto inner = std::make_unique<SpringCell>(kRadius, kStiffness);
     spring = inner.get();
-    cell = std::make_unique<PuncturableCell>(sceneOf(puncture), std::move(inner), std::nullopt, std::move(branch));
+    cell = std::make_unique<PuncturableCell>(sceneOf(puncture), std::move(inner), std::nullopt, std::move(branch),
+                                             pierced_error);
   }
 
   /// On a straight line at `speed`, m/s; returns the force's z at the end, N.

@@ -32,6 +32,7 @@ class SpringCell : public CellModel {
   }
 
   const std::optional<Contact>& contact() const override { return contact_; }
+  std::optional<double> forceError() const override { return error; }
   const std::string& invalidReason() const override { return invalid_reason_; }
   std::optional<Solution> solution(double /*time*/) const override { return std::nullopt; }
   std::vector<std::array<int, 3>> triangles() const override { return {}; }
@@ -40,7 +41,8 @@ class SpringCell : public CellModel {
 
   bool valid = true;
   int released = 0;
-  double snap = 0;  ///< m, from the axis: a touch within it is on the axis, as that of a live cell
+  std::optional<double> error;  ///< N
+  double snap = 0;              ///< m, from the axis: a touch within it is on the axis, as that of a live cell
 
  private:
   double radius_, stiffness_;

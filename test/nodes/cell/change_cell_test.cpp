@@ -57,6 +57,10 @@ class ChangeCellTest : public testing::Test {
     message.value = {value};
     session_.world().say("cell/set_parameters", message);
   }
+  /// N, that the published force may be off.
+  double forceError() {
+    return session_.world().hear<cell_microinjection::CellState>("cell/state").newest()->force_error;
+  }
   /// The force changes for `duration` (s), by no more than an eighth of the change in 1 ms.
   void expectSteadyChange(double duration) {
     const double before = predicted();
@@ -83,6 +87,16 @@ TEST_F(ChangeCellTest, AnotherModulusIsFelt) {
   expectSteadyChange(kChangeTime);
   EXPECT_NEAR(predicted() / before, 15 / 17.9, 1e-3);
   EXPECT_EQ(felt("young_modulus"), 15e3);
+}
+
+TEST_F(ChangeCellTest, TheErrorIsThatOfTheFeltForce) {
+  EXPECT_GT(forceError(), 0);
+  EXPECT_LT(forceError(), 0.03 * predicted());
+  EXPECT_TRUE(change({"young_modulus"}, {20e3}).success);
+  session_.run(0.1);
+  EXPECT_LT(forceError(), 0.03 * predicted());
+  needle_.jumpTo(heightOf(-20e-6), 0.1);
+  EXPECT_EQ(forceError(), 0) << "nothing touches";
 }
 
 TEST_F(ChangeCellTest, AMessageChangesItToo) {
