@@ -120,8 +120,8 @@ class CellModel {
   virtual Insertion insertion() const { return {}; }
   virtual std::vector<std::string> layers() const { return {}; }  ///< of membranes that can fail, outermost first
   virtual const std::string& invalidReason() const = 0;           ///< of the last force; empty if it was valid
-  /// N, that the last force may be off the converged one: one of ten is off by more. Nothing: not known, as where springs
-  /// stand for what nobody has solved, or beside what was prepared.
+  /// N, that the last force may be off the converged one: one of ten is off by more. Nothing: not known, as where
+  /// springs stand for what nobody has solved, or beside what was prepared.
   virtual std::optional<double> forceError() const { return std::nullopt; }
   virtual std::optional<Solution> solution(double time) const = 0;
 

@@ -98,7 +98,9 @@ LiveFemCell::LiveFemCell(const Scene& scene) : scene_(scene) {
   scene.requireContinuum("elements of the cell's inside");
   scene.requireGlued("a live cell");
   if (scene.needle.contact.adhesion_energy > 0) {  // the extrapolation would be mistaken for adhesion
-    throw ConfigError("needle/contact/adhesion: must be left out: a live cell has no adhesion (indent has, and a surrogate cell of a family)");
+    throw ConfigError(
+        "needle/contact/adhesion: must be left out: a live cell has no adhesion (indent has, and a surrogate cell of a "
+        "family)");
   }
   SymmetricSolver::useOneThread();
   const Scene::Tip& tip = scene.needle.tip;
