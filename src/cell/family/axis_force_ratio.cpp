@@ -99,28 +99,20 @@ namespace {
 
 std::optional<AxisForceRatio> findIn(const std::string& families, const std::string& folder, const Scene& scene,
                                      std::string& reason) {
-  reason.clear();
-  if (families.empty()) return std::nullopt;
-  for (const std::string& file : familyFiles(families + folder)) {
-    try {
-      const AxisForceRatioFamily family(SectionFamilyData::loadBoth(file));
-      return family.force(family.data().coordinatesOf(scene));
-    } catch (const ConfigError& error) {
-      reason += (reason.empty() ? "" : "; ") + std::string(error.what());
-    }
-  }
-  if (reason.empty()) reason = families + folder + " has no family";
-  return std::nullopt;
+  return firstFamilyWith(families, folder, reason, [&](const std::string& file) {
+    const AxisForceRatioFamily family(SectionFamilyData::loadBoth(file));
+    return family.force(family.data().coordinatesOf(scene));
+  });
 }
 
 }  // namespace
 
 std::optional<AxisForceRatio> findHeldForce(const std::string& families, const Scene& scene, std::string& reason) {
-  return findIn(families, "/held", scene, reason);
+  return findIn(families, "held", scene, reason);
 }
 
 std::optional<AxisForceRatio> findFrictionForce(const std::string& families, const Scene& scene, std::string& reason) {
-  return findIn(families, "/friction", scene, reason);
+  return findIn(families, "friction", scene, reason);
 }
 
 }  // namespace microinjection

@@ -107,19 +107,12 @@ FamilyBranch PiercedFamily::branch(const Scene& scene) const {
 }
 
 std::optional<FamilyBranch> findFamilyBranch(const std::string& families, const Scene& scene, std::string& reason) {
-  reason.clear();
-  if (families.empty()) return std::nullopt;
-  for (const std::string& file : familyFiles(families + "/pierced")) {
-    try {
-      FamilyBranch found = PiercedFamily(SectionFamilyData::loadBoth(file)).branch(scene);
-      if (found.branch.onset()) return found;
+  return firstFamilyWith(families, "pierced", reason, [&](const std::string& file) {
+    FamilyBranch found = PiercedFamily(SectionFamilyData::loadBoth(file)).branch(scene);
+    if (!found.branch.onset())
       throw ConfigError("family " + file + ": nothing pierces the cell to the depth that it has");
-    } catch (const ConfigError& error) {
-      reason += (reason.empty() ? "" : "; ") + std::string(error.what());
-    }
-  }
-  if (reason.empty()) reason = families + "/pierced has no family";
-  return std::nullopt;
+    return found;
+  });
 }
 
 }  // namespace microinjection

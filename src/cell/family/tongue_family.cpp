@@ -33,16 +33,8 @@ FamilyTongue TongueFamily::tongue(const Eigen::VectorXd& coordinates) const {
 FamilyTongue TongueFamily::tongue(const Scene& scene) const { return tongue(data_.coordinatesOf(scene)); }
 
 std::optional<FamilyTongue> findFamilyTongue(const std::string& families, const Scene& scene, std::string& reason) {
-  reason.clear();
-  for (const std::string& file : familyFiles(families + "/tongues")) {
-    try {
-      return TongueFamily::load(file).tongue(scene);
-    } catch (const ConfigError& error) {
-      reason += (reason.empty() ? "" : "; ") + std::string(error.what());
-    }
-  }
-  if (reason.empty()) reason = families + "/tongues has no family";
-  return std::nullopt;
+  return firstFamilyWith(families, "tongues", reason,
+                         [&](const std::string& file) { return TongueFamily::load(file).tongue(scene); });
 }
 
 }  // namespace microinjection

@@ -198,17 +198,9 @@ WithdrawalLoss WithdrawalFamily::loss(const Scene& scene) const {
 }
 
 std::optional<WithdrawalLoss> findWithdrawal(const std::string& families, const Scene& scene, std::string& reason) {
-  reason.clear();
-  if (families.empty()) return std::nullopt;
-  for (const std::string& file : familyFiles(families + "/withdrawal")) {
-    try {
-      return WithdrawalFamily(SectionFamilyData::loadBoth(file)).loss(scene);
-    } catch (const ConfigError& error) {
-      reason += (reason.empty() ? "" : "; ") + std::string(error.what());
-    }
-  }
-  if (reason.empty()) reason = families + "/withdrawal has no family";
-  return std::nullopt;
+  return firstFamilyWith(families, "withdrawal", reason, [&](const std::string& file) {
+    return WithdrawalFamily(SectionFamilyData::loadBoth(file)).loss(scene);
+  });
 }
 
 }  // namespace microinjection

@@ -15,6 +15,17 @@ PunctureConfig tough() {
   return config;
 }
 
+/// The same with a membrane behind it. @param gap m, @param stiffness N/m, @param force N, at which it fails
+PunctureConfig toughWithMembrane(double gap, double stiffness, double force) {
+  PunctureConfig config = tough();
+  PunctureConfig::Layer& membrane = config.layers.emplace_back();
+  membrane.name = "oolemma";
+  membrane.gap = gap;
+  membrane.stiffness = stiffness;
+  membrane.force = force;
+  return config;
+}
+
 /// N, of the onset of the closed form: its depth is ((e + c) + sqrt((e + c)^2 - c^2)) / k.
 double onsetForce(const SpringBranch& branch) {
   const double sum = branch.opened + branch.cost;
@@ -188,12 +199,8 @@ TEST(PiercedPuncture, AResealedHoleReturnsNoMoreThanItGot) {
 /// deeper.
 TEST(PiercedPuncture, AMembraneBehindItIsMetWhereTheDeformedCellHasIt) {
   const SpringBranch branch;
-  PunctureConfig config = tough();
-  PunctureConfig::Layer& oolemma = config.layers.emplace_back();
-  oolemma.name = "oolemma";
-  oolemma.gap = 24e-6;
-  oolemma.force = 0.2e-6;
-  oolemma.stiffness = 0.02;
+  const PunctureConfig config = toughWithMembrane(24e-6, 0.02, 0.2e-6);
+  const PunctureConfig::Layer& oolemma = config.layers.back();
   PunctureDrive needle(config, 1000, branch.make());
   const double dent = branch.cost / branch.spring, steady = branch.opened + branch.cost;
   needle.toDepth(25e-6);
@@ -212,12 +219,7 @@ TEST(PiercedPuncture, AMembraneBehindItIsMetWhereTheDeformedCellHasIt) {
 
 /// It is within the hole that the first crack makes.
 TEST(PiercedPuncture, AWeakMembraneCloseBehindItFailsAtOnce) {
-  PunctureConfig config = tough();
-  PunctureConfig::Layer& oolemma = config.layers.emplace_back();
-  oolemma.name = "oolemma";
-  oolemma.gap = 1e-6;
-  oolemma.force = 0.05e-6;
-  oolemma.stiffness = 0.02;
+  const PunctureConfig config = toughWithMembrane(1e-6, 0.02, 0.05e-6);
   const SpringBranch branch;
   PunctureDrive needle(config, 1000, branch.make());
   while (needle.layers() == 0) needle.toDepth(kTop - needle.tip.z() + 0.02e-6);
@@ -231,12 +233,8 @@ TEST(PiercedPuncture, AWeakMembraneCloseBehindItFailsAtOnce) {
 
 /// 1 N/m: the hole of the onset, of 12 um without it, ends there.
 TEST(PiercedPuncture, AStrongMembraneStopsTheFirstHole) {
-  PunctureConfig config = tough();
-  PunctureConfig::Layer& oolemma = config.layers.emplace_back();
-  oolemma.name = "oolemma";
-  oolemma.gap = 3e-6;
-  oolemma.force = 1;
-  oolemma.stiffness = 1;
+  const PunctureConfig config = toughWithMembrane(3e-6, 1, 1);
+  const PunctureConfig::Layer& oolemma = config.layers.back();
   const SpringBranch branch;
   PunctureDrive needle(config, 1000, branch.make());
   while (needle.layers() == 0) needle.toDepth(kTop - needle.tip.z() + 0.02e-6);
@@ -249,12 +247,7 @@ TEST(PiercedPuncture, AStrongMembraneStopsTheFirstHole) {
 }
 
 TEST(PiercedPuncture, ANeedleThatGoesBackLeavesTheMembrane) {
-  PunctureConfig config = tough();
-  PunctureConfig::Layer& oolemma = config.layers.emplace_back();
-  oolemma.name = "oolemma";
-  oolemma.gap = 20e-6;
-  oolemma.force = 0.2e-6;
-  oolemma.stiffness = 0.02;
+  const PunctureConfig config = toughWithMembrane(20e-6, 0.02, 0.2e-6);
   PunctureDrive needle(config, 1000, SpringBranch().make());
   needle.toDepth(35e-6);  // stretched by some 6 um
   ASSERT_EQ(needle.layers(), 1);
