@@ -31,6 +31,8 @@ struct TipForce {
 ///                        height         membranes,         LiveCellModel        a solver thread, extrapolated
 ///                                       shaft in the cell  ExplicitCellModel    the paper's dynamics
 ///
+/// A surrogate under a needle that rubs or adheres has WithdrawnCell before it, for the way out.
+///
 /// The model itself finds first contact and decides when a contact ends, because the end depends on its mechanics: a
 /// surface that sticks to the tip follows it a little beyond its place at rest.
 ///
