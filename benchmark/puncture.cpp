@@ -1,5 +1,5 @@
 // Puncture by mechanics: steady penetration against its closed balance of energy, onset and branches of four cells, the
-// paper's.
+// paper's; shells, and cells with a strength.
 
 #include <boost/math/special_functions/fpclassify.hpp>
 
@@ -22,6 +22,7 @@
 #include "cell/model/pierced_cell.h"
 #include "cell/model/piezo_stroke.h"
 #include "cell/model/solved_branch.h"
+#include "cell/penetration/hole_expansion.h"
 
 namespace microinjection {
 namespace {
@@ -157,6 +158,72 @@ void branches(PrintedTable& table, double level) {
   }
 }
 
+/// Onset of the four cells where their material has a strength, J / (e d): to compare with a second solver's cohesive
+/// zone of the same opening d.
+void cohesive(PrintedTable& table, double level) {
+  table.add(
+      "study,cell,opening_over_R,strength_over_mu,hole_over_R,onset_depth_over_R,onset_force,pierced_force,seconds\n");
+  struct Wall {
+    int cell;
+    double opening;
+  };
+  for (const Wall& wall : {Wall{0, 0.08}, {1, 0.04}, {2, 0.08}, {3, 0.08}}) {
+    const SoftCell& cell = kCells[wall.cell];
+    Scene scene = sceneOf(cell);
+    PunctureConfig::Layer& layer = scene.cell.puncture.layers.front();
+    layer.strength = layer.toughness / (M_E * wall.opening * kTip);
+    const double unit = M_PI * kTip * kTip * 1e3, begin = now();
+    const PiercedBranch branch = solvePiercedBranch(scene, level);
+    if (!branch.onset()) throw std::runtime_error(std::string("no onset of cell ") + cell.name);
+    char row[200];
+    std::snprintf(row, sizeof row, "cohesive,%s,%g,%.4g,%.4f,%.4f,%.4f,%.4f,%.0f\n", cell.name, wall.opening,
+                  layer.strength / 1e3, steadyPenetration(scene).hole_radius, branch.onset()->depth / kTip,
+                  branch.onset()->force / unit, branch.onset()->pierced_force / unit, now() - begin);
+    table.add(row);
+  }
+}
+
+/// A shell of 2 tip radii over an inside, with and without a tense surface of the latter: onset of both and the force
+/// in each against the balance of a long hole in that layer.
+void layers(PrintedTable& table, double level) {
+  table.add(
+      "study,inside_over_shell,tension_over_mu_R,onset_depth_over_R,onset_force,through_depth_over_R,"
+      "force_in_shell,force_inside,closed_inside,seconds\n");
+  for (const double softer : {0.5, 0.1}) {
+    for (const double tension : {0.0, 0.1}) {
+      Scene scene = sceneOf({"shell", "neo_hookean", 0, 12, 4, 0.5});
+      scene.needle.contact.mode = "sticking";
+      scene.cell.layers.push_back(scene.cell.layers.front());
+      Scene::Layer& inside = scene.cell.layers.back();
+      inside.name = "inside";
+      inside.outer_radius -= 2 * kTip;
+      inside.material.young_modulus *= softer;
+      inside.surface_tension = tension * 1e3 * kTip;
+      scene.cell.puncture.layers.emplace_back().toughness = softer * scene.cell.puncture.layers.front().toughness;
+      const double unit = M_PI * kTip * kTip * 1e3, begin = now();
+      const PiercedBranch branch = solvePiercedBranch(scene, level);
+      if (!branch.onset()) throw std::runtime_error("a shell without an onset");
+      const PiercedBranch::Onset onset = *branch.onset();
+      const double border = branch.crack().parts.back().from;
+      double depth = onset.depth, length = onset.length, in_shell = onset.pierced_force;
+      while (length <= border) {
+        in_shell = branch.at(depth, length).force;
+        length = branch.grown(depth += kTip / 40, length);
+      }
+      const double through = depth;
+      while (length < border + 3 * kTip) length = branch.grown(depth += kTip / 40, length);
+      const double hole = steadyPenetration(scene).hole_radius;
+      const HoleExpansion expansion(*makeMaterial(inside.material), inside.outer_radius / kTip);
+      const double closed = kTip * kTip * expansion.at(hole).energy + branch.crack().parts.back().cost;
+      char row[200];
+      std::snprintf(row, sizeof row, "layers,%g,%g,%.3f,%.4f,%.3f,%.4f,%.4f,%.4f,%.0f\n", softer, tension,
+                    onset.depth / kTip, onset.force / unit, through / kTip, in_shell / unit,
+                    branch.at(depth, length).force / unit, closed / unit, now() - begin);
+      table.add(row);
+    }
+  }
+}
+
 /// Median, what one of ten exceeds, and the worst of relative errors, in percent.
 std::string quantiles(std::vector<double> errors) {
   std::sort(errors.begin(), errors.end());
@@ -255,8 +322,7 @@ void paper(PrintedTable& table, double level) {
     Scene scene = sceneOf({"paper", "ogden", exponent, 28e-6 / kTip, 10e-6 / kTip, 1});
     scene.needle.contact.mode = "sticking";
     PiercedCellConfig config;
-    config.material = scene.cell.material();
-    config.radius = 28e-6;
+    config.layers = scene.cell.layers;
     config.held_radius = 10e-6;
     config.tip_radius = kTip;
     config.hole_length = 0;
@@ -307,12 +373,13 @@ void paper(PrintedTable& table, double level) {
 
 int main(int argc, char** argv) {
   using namespace microinjection;
-  std::string studies = "steady,branches,piezo";
+  std::string studies = "steady,branches,cohesive,layers,piezo";
   double level = 0;
   int members = 30;
   namespace po = boost::program_options;
   po::options_description more;
-  more.add_options()("studies", po::value(&studies)->default_value(studies), "steady, branches, piezo, paper, family");
+  more.add_options()("studies", po::value(&studies)->default_value(studies),
+                     "steady, branches, cohesive, layers, piezo, paper, family");
   more.add_options()("level", po::value(&level)->default_value(level), "of the meshes: each halves the elements");
   more.add_options()("members", po::value(&members)->default_value(members), "of the study family");
   return benchMain(
@@ -322,6 +389,8 @@ int main(int argc, char** argv) {
         PrintedTable table;
         if (asked("steady")) steady(table);
         if (asked("branches")) branches(table, level);
+        if (asked("cohesive")) cohesive(table, level);
+        if (asked("layers")) layers(table, level);
         if (asked("piezo")) piezo(table, level);
         if (asked("paper")) paper(table, level);
         if (asked("family")) family(table, members);

@@ -25,6 +25,7 @@ Scene sceneOf(const PiercedCase& of) {
   scene.cell.puncture.layers.front().toughness = of.toughness;
   scene.cell.puncture.layers.front().barrier = of.barrier;
   scene.cell.puncture.shaft.coefficient = of.coefficient;
+  if (of.more) of.more(scene);
   return scene;
 }
 

@@ -17,7 +17,16 @@ struct PiercedCase {
   double coefficient;  ///< of friction, of the wall on the shaft
   double barrier;      ///< J
   double stroke = 0;   ///< m, of a piezo that strikes ten times a second, within 50 us
+  void (*more)(Scene&) = nullptr;
 };
+
+inline void addMembraneBehind(Scene& scene) {
+  PunctureConfig::Layer& membrane = scene.cell.puncture.layers.emplace_back();
+  membrane.name = "oolemma";
+  membrane.gap = 4e-6;
+  membrane.stiffness = 0.05;
+  membrane.force = 0.1e-6;
+}
 
 inline constexpr PiercedCase kPiercedCases[] = {
     {"pierced", 0.018, 0.05, 0},              // as it is
@@ -29,7 +38,18 @@ inline constexpr PiercedCase kPiercedCases[] = {
     {"pierced_soft", 0.0037, 0.05, 0},        // a hole of 0.89 of the tip's radius; the limit is 0.9
     {"pierced_tough", 0.062, 0.05, 0},        // of 0.15, the limit
     {"pierced_never", 0.018, 0.05, 1},        // no depth is enough
-    {"pierced_struck", 0.018, 0.05, 0, 0.5e-6}};
+    {"pierced_struck", 0.018, 0.05, 0, 0.5e-6},
+    {"pierced_twice", 0.018, 0.05, 0, 0, addMembraneBehind},
+    {"pierced_fast", 0.018, 0.05, 0, 0,  // twice as tough at 100 um/s
+     [](Scene& scene) {
+       scene.cell.puncture.layers.front().toughness_rate = {100e-6, 0.5};
+     }},
+    {"pierced_resealing", 0.018, 0.05, 0, 0, [](Scene& scene) { scene.cell.puncture.resealing_time = 0.5; }},
+    {"pierced_relaxing", 0.018, 0.05, 0, 0,
+     [](Scene& scene) {
+       scene.cell.material().viscoelasticity.prony = {{0.5, 0.3}};
+     }},
+    {"pierced_tapered", 0.018, 0.05, 0, 0, [](Scene& scene) { scene.needle.tip.taper = 0.05; }}};
 
 /// Such a cell as a session serves it: the force of a family's member until the layer fails, then that of its
 /// PiercedBranch.

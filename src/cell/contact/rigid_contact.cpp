@@ -57,7 +57,7 @@ RigidContact<Dim>::RigidContact(const LayeredBody<Dim>& body, std::shared_ptr<co
     if (config_.moves[Dim == 2 ? 2 * k : k]) moving_.push_back(k);
   }
   for (const auto& facet : body.mesh().facets) {
-    if (facet.layer == 0) addFacet(body, facet);
+    if (facet.outer) addFacet(body, facet);
   }
   reset();
 }

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "cell/estimation/sample_history.h"
+#include "cell/material/force_memory.h"
 #include "cell/model/scene.h"
-#include "cell/surrogate/force_memory.h"
 #include "cell/surrogate/surrogate_contact.h"
 
 namespace microinjection {

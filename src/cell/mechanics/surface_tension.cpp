@@ -1,6 +1,7 @@
 #include "cell/mechanics/surface_tension.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -11,6 +12,8 @@
 
 namespace microinjection {
 namespace {
+
+constexpr double kOnSphere = 1e-6;  ///< of the radius
 
 /// Area |a1 x a2| = sqrt(g) with the metric's determinant g. False when it vanishes.
 bool addArea(const Eigen::Matrix3d& at, double tension, SurfaceDensity<3>& density) {
@@ -78,17 +81,34 @@ SurfaceTension<Dim>::SurfaceTension(const LayeredBody<Dim>& body, int layer, dou
     : tension_(tension), pressure_(2 * tension / radius), surface_(body) {
   if (!(radius > 0)) throw std::invalid_argument("radius " + std::to_string(radius) + " must be positive");
   if (!(tension >= 0)) throw std::invalid_argument("tension " + std::to_string(tension) + " must not be negative");
+  const auto onSurface = [&](const auto& facet) {
+    return facet.layer == layer && (Dim == 3 || std::all_of(facet.nodes.begin(), facet.nodes.end(), [&](int node) {
+                                      return std::abs(body.mesh().nodes[node].norm() / radius - 1) < kOnSphere;
+                                    }));
+  };
+  bool pierced = false;
   for (const auto& facet : body.mesh().facets) {
-    if (facet.layer != layer) continue;
-    Facet result{surface_.facet(body, facet), 0, {}};
+    const bool tense = onSurface(facet), wall = !tense && Dim == 2 && facet.outer && facet.layer >= layer;
+    if (!tense && !wall) continue;
+    pierced = pierced || wall;
+    Facet result{surface_.facet(body, facet), tense, 0, {}};
     LocalEnergy undeformed;
-    if (!integrate(result.undeformed, tension_, pressure_, Order::kGradient, undeformed)) {
+    if (!integrate(result.undeformed, tense ? tension_ : 0, pressure_, Order::kGradient, undeformed)) {
       throw std::invalid_argument("facet " + std::to_string(facets_.size()) + " of layer " + std::to_string(layer) +
                                   " has no area");
     }
     result.energy = undeformed.energy;
     result.dead_load = undeformed.gradient;
     facets_.push_back(std::move(result));
+  }
+  if (pierced) {
+    double area = 0;
+    LocalEnergy local;
+    for (Facet& facet : facets_) {
+      facet.dead_load.setZero();
+      if (facet.tense && integrate(facet.undeformed, 1, 0, Order::kEnergy, local)) area += local.energy;
+    }
+    facets_.front().energy += tension_ * (4 * M_PI * radius * radius - area);
   }
   if (facets_.empty()) throw std::invalid_argument("the body has no surface of layer " + std::to_string(layer));
 }
@@ -108,7 +128,7 @@ template <int Dim>
 bool SurfaceTension<Dim>::evaluate(int index, const Eigen::VectorXd& state, Order order, LocalEnergy& result) const {
   const Facet& facet = facets_[index];
   const Positions x = surface_.positions(facet, state);
-  if (!integrate(x, tension_, pressure_, order, result)) return false;
+  if (!integrate(x, facet.tense ? tension_ : 0, pressure_, order, result)) return false;
   const Positions u = x - facet.undeformed;
   result.energy -= facet.energy + facet.dead_load.dot(Eigen::Map<const Eigen::VectorXd>(u.data(), u.size()));
   if (order != Order::kEnergy) result.gradient -= facet.dead_load;
@@ -120,7 +140,8 @@ double SurfaceTension<Dim>::total(const Eigen::VectorXd& state, double tension, 
   double sum = 0;
   LocalEnergy local;
   for (const Facet& facet : facets_) {
-    const bool defined = integrate(surface_.positions(facet, state), tension, pressure, Order::kEnergy, local);
+    const bool defined =
+        integrate(surface_.positions(facet, state), facet.tense ? tension : 0, pressure, Order::kEnergy, local);
     sum += defined ? local.energy : std::numeric_limits<double>::quiet_NaN();
   }
   return sum;

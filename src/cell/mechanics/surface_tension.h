@@ -23,6 +23,9 @@ namespace microinjection {
 /// with the size of the facets.
 ///
 /// In a section (Dim = 2) area and volume are those of the whole surface of revolution.
+///
+/// A hole through the surface takes a part of its area away, whose energy is then missing, and p0 acts on the hole's
+/// wall. At the rim nothing balances the tension, so that such a body is not at rest when it is undeformed.
 template <int Dim>
 class SurfaceTension : public EnergyTerm {
  public:
@@ -44,6 +47,7 @@ class SurfaceTension : public EnergyTerm {
  private:
   using Positions = typename SurfaceIntegral<Dim>::Positions;
   struct Facet : SurfaceIntegral<Dim>::Facet {
+    bool tense = true;          ///< of the surface; else of a hole's wall
     double energy;              ///< J, undeformed
     Eigen::VectorXd dead_load;  ///< N, this facet's part of G0
   };

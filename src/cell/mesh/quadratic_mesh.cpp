@@ -53,10 +53,16 @@ bool onAxis(const QuadraticMesh<Dim>& mesh, const std::array<int, Dim>& face) {
   return std::all_of(face.begin(), face.end(), [&](int v) { return mesh.nodes[v][0] == 0; });
 }
 
+template <int Dim>
+struct LayerSurface {
+  std::array<int, Dim> face;
+  int layer;
+  bool outer;
+};
+
 /// Outer faces of the elements of each layer.
 template <int Dim>
-std::vector<std::pair<std::array<int, Dim>, int>> layerSurfaces(const QuadraticMesh<Dim>& mesh,
-                                                                const Simplices<Dim>& elements) {
+std::vector<LayerSurface<Dim>> layerSurfaces(const QuadraticMesh<Dim>& mesh, const Simplices<Dim>& elements) {
   struct Side {
     std::array<int, Dim> face;
     int layer;
@@ -70,12 +76,12 @@ std::vector<std::pair<std::array<int, Dim>, int>> layerSurfaces(const QuadraticM
       sides[key].push_back({face, mesh.layers[e]});
     }
   }
-  std::vector<std::pair<std::array<int, Dim>, int>> surfaces;
+  std::vector<LayerSurface<Dim>> surfaces;
   for (const auto& [key, pair] : sides) {
-    if (pair.size() == 1 && !onAxis<Dim>(mesh, pair[0].face)) surfaces.emplace_back(pair[0].face, pair[0].layer);
+    if (pair.size() == 1 && !onAxis<Dim>(mesh, pair[0].face)) surfaces.push_back({pair[0].face, pair[0].layer, true});
     if (pair.size() == 2 && pair[0].layer != pair[1].layer) {
       const Side& inner = pair[0].layer > pair[1].layer ? pair[0] : pair[1];
-      surfaces.emplace_back(inner.face, inner.layer);
+      surfaces.push_back({inner.face, inner.layer, false});
     }
   }
   return surfaces;
@@ -96,9 +102,10 @@ QuadraticMesh<Dim> make(const std::vector<Eigen::Matrix<double, Dim, 1>>& vertic
     for (const auto& [a, b] : elementEdges<Dim>()) nodes[next++] = midpoints.of(corners[a], corners[b]);
     mesh.elements.push_back(nodes);
   }
-  for (const auto& [corners, layer] : layerSurfaces<Dim>(mesh, elements)) {
+  for (const auto& [corners, layer, outer] : layerSurfaces<Dim>(mesh, elements)) {
     typename QuadraticMesh<Dim>::Facet facet;
     facet.layer = layer;
+    facet.outer = outer;
     std::copy(corners.begin(), corners.end(), facet.nodes.begin());
     int next = Dim;
     for (const auto& [a, b] : facetEdges<Dim>()) {

@@ -25,7 +25,8 @@ struct QuadraticMesh {
   /// counter-clockwise (in space); along a section's arc they go from -z to +z.
   struct Facet {
     std::array<int, kFacetNodes> nodes;
-    int layer;
+    int layer;           ///< of the element; between two layers the inner one's
+    bool outer = false;  ///< nothing is behind it
   };
 
   std::vector<Point> nodes;                       ///< m

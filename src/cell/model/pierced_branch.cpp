@@ -42,20 +42,47 @@ Values valuesOf(const std::vector<PiercedBranch::Knot>& knots, double beyond) {
 
 }  // namespace
 
-PiercedBranch::PiercedBranch(std::vector<Knot> whole, std::vector<Hole> holes, double cost, double barrier,
-                             double wall_force)
-    : whole_(std::move(whole)), holes_(std::move(holes)), cost_(cost), wall_force_(wall_force), barrier_(barrier) {
+PiercedBranch::PiercedBranch(std::vector<Knot> whole, std::vector<Hole> holes, Crack crack)
+    : whole_(std::move(whole)), holes_(std::move(holes)), crack_(std::move(crack)) {
   const auto rises = [](const std::vector<Knot>& knots) {
     const auto falls = [](const Knot& a, const Knot& b) { return !(a.beyond < b.beyond); };
     return knots.size() >= 2 && std::adjacent_find(knots.begin(), knots.end(), falls) == knots.end();
   };
-  bool good = rises(whole_) && holes_.size() >= 2 && holes_.front().length > 0 && cost >= 0 && barrier >= 0;
+  bool good = rises(whole_) && holes_.size() >= 2 && holes_.front().length > 0;
   for (std::size_t i = 0; good && i < holes_.size(); ++i)
     good = rises(holes_[i].knots) && (i == 0 || holes_[i].length > holes_[i - 1].length);
   if (!good)
     throw std::invalid_argument("a pierced branch needs two holes or more of rising length, with rising knots");
+  const auto& parts = crack_.parts;
+  good = crack_.barrier >= 0 && !parts.empty() && parts.front().from == 0;
+  for (std::size_t i = 0; good && i < parts.size(); ++i)
+    good = parts[i].cost >= 0 && (i == 0 || parts[i].from > parts[i - 1].from);
+  if (!good) throw std::invalid_argument("a crack needs costs that are not negative, of parts that begin at 0");
   for (const Hole& hole : holes_) furthest_ = std::max(furthest_, hole.knots.back().beyond);
   onset_ = findOnset();
+}
+
+PiercedBranch PiercedBranch::tougher(double factor) const {
+  Crack crack = crack_;
+  for (Crack::Part& part : crack.parts) part.cost *= factor;
+  return {whole_, holes_, std::move(crack)};
+}
+
+double PiercedBranch::costAt(double length) const {
+  double cost = crack_.parts.front().cost;
+  for (const Crack::Part& part : crack_.parts) {
+    if (length > part.from) cost = part.cost;
+  }
+  return cost;
+}
+
+double PiercedBranch::costUntil(double length) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < crack_.parts.size(); ++i) {
+    const double end = i + 1 < crack_.parts.size() ? std::min(crack_.parts[i + 1].from, length) : length;
+    sum += crack_.parts[i].cost * std::max(end - crack_.parts[i].from, 0.0);
+  }
+  return sum;
 }
 
 PiercedBranch::State PiercedBranch::whole(double depth) const {
@@ -118,7 +145,7 @@ PiercedBranch::State PiercedBranch::at(double depth, double length) const {
 
 double PiercedBranch::grown(double depth, double length, const Resistance& resistance) const {
   const auto grows = [&](double at_length) {
-    return at(depth, at_length).release > resistance.tougher * cost_ + resistance.at(at_length);
+    return at(depth, at_length).release > resistance.tougher * costAt(at_length) + resistance.at(at_length);
   };
   // Beyond the paths the crack has long grown: forces there are no solutions.
   const double from = std::max({length, shortest(), depth - furthest_});
@@ -145,22 +172,26 @@ std::optional<PiercedBranch::Onset> PiercedBranch::findOnset() const {
     for (int i = 0; i <= kLengths; ++i) {
       const double length = shortest() + (longest() - shortest()) * i / kLengths;
       if (!isSolved(depth, length)) continue;
-      const double excess = at(depth, length).energy + cost_ * length + barrier_ - whole(depth).energy;
+      const double excess = at(depth, length).energy + costUntil(length) + crack_.barrier - whole(depth).energy;
       if (excess < least.excess) least = {length, excess};
     }
     return least;
   };
-  const double first = whole_.front().beyond, last = whole_.back().beyond;
-  double low = first, high = first;
-  for (int i = 1; i <= kDepths && best(high).excess >= 0; ++i) {
-    low = high;
-    high = first + (last - first) * i / kDepths;
+  double high = crack_.gives_way;
+  if (high == 0) {
+    const double first = whole_.front().beyond, last = whole_.back().beyond;
+    double low = high = first;
+    for (int i = 1; i <= kDepths && best(high).excess >= 0; ++i) {
+      low = high;
+      high = first + (last - first) * i / kDepths;
+    }
+    if (best(high).excess >= 0) return std::nullopt;
+    for (int i = 0; i < kHalvings; ++i) {
+      const double middle = (low + high) / 2;
+      (best(middle).excess < 0 ? high : low) = middle;
+    }
   }
-  if (best(high).excess >= 0) return std::nullopt;
-  for (int i = 0; i < kHalvings; ++i) {
-    const double middle = (low + high) / 2;
-    (best(middle).excess < 0 ? high : low) = middle;
-  }
+  if (std::isinf(best(high).excess)) return std::nullopt;
   Onset onset;
   onset.depth = high;
   onset.force = whole(high).force;

@@ -12,14 +12,14 @@ struct Scene;
 ///
 /// The needle's end is at the depth d below the undeformed pole, the hole's undeformed length is l. The energies Pi0(d)
 /// of the whole cell and Pi(d, l) of cells with holes of a few lengths are known. The force on the needle is the
-/// derivative by d. The crack costs c = 2 pi b J for each metre. It grows where the energy that it releases exceeds its
-/// cost,
+/// derivative by d. The crack costs c = 2 pi b J for each metre, in each of the cell's layers with its own toughness J.
+/// It grows where the energy that it releases exceeds its cost,
 ///
 ///     -dPi/dl at a fixed d  >=  c,
 ///
 /// and it begins where some length has a smaller sum of energy and cost than the whole cell has. Between both there is
 /// a barrier, because a hole that is shorter than the tip is round is not opened by the shaft: so the force falls at
-/// the onset.
+/// the onset. A material of a known strength gives way where that is exceeded instead.
 ///
 /// Between the lengths Pi is interpolated at a fixed d - l, the tip's place beyond the bottom of the undeformed hole,
 /// on which it depends strongly while it depends on l almost linearly. Forces and releases are derivatives of the one
@@ -44,12 +44,21 @@ class PiercedBranch {
     double length = 0, pierced_force = 0;  ///< m, N, of the hole that has been made
   };
 
+  /// What a hole costs beside the energy of the cell.
+  struct Crack {
+    struct Part {
+      double from = 0;  ///< m, length of the hole at which this layer begins
+      double cost = 0;  ///< N: J per metre of crack, >= 0
+    };
+    std::vector<Part> parts = {Part()};  ///< by rising length, the first from 0
+    double barrier = 0;                  ///< J, to begin a hole
+    double wall_force = 0;               ///< N/m, of the wall on each metre of shaft, the sum of its pressure around it
+    double gives_way = 0;                ///< m, depth at which the material's strength is exceeded; 0: energy decides
+  };
+
   /// @param whole of the cell without a hole. @param holes of rising lengths, two or more. Each path has two knots or
-  /// more. @param cost N: J per metre of crack, >= 0. @param barrier J, beside that cost, to begin a hole.
-  /// Throws std::invalid_argument otherwise.
-  /// @param wall_force N/m, of the wall on each metre of shaft, the sum of its pressure around it
-  PiercedBranch(std::vector<Knot> whole, std::vector<Hole> holes, double cost, double barrier = 0,
-                double wall_force = 0);
+  /// more. Throws std::invalid_argument otherwise.
+  PiercedBranch(std::vector<Knot> whole, std::vector<Hole> holes, Crack crack);
 
   State whole(double depth) const;  ///< its release is 0
 
@@ -73,13 +82,13 @@ class PiercedBranch {
   double grown(double depth, double length) const { return grown(depth, length, {}); }
 
   /// The same cell with so many times the cost.
-  PiercedBranch tougher(double factor) const { return {whole_, holes_, factor * cost_, barrier_, wall_force_}; }
+  PiercedBranch tougher(double factor) const;
 
   double shortest() const { return holes_.front().length; }  ///< m
   double longest() const { return holes_.back().length; }    ///< m
-  double cost() const { return cost_; }                      ///< N
-  double barrier() const { return barrier_; }                ///< J
-  double wallForce() const { return wall_force_; }           ///< N/m
+  const Crack& crack() const { return crack_; }
+  double costAt(double length) const;     ///< N, of a crack that is as long
+  double costUntil(double length) const;  ///< J, without the barrier
   const std::vector<Hole>& holes() const { return holes_; }
 
  private:
@@ -89,7 +98,7 @@ class PiercedBranch {
 
   std::vector<Knot> whole_;
   std::vector<Hole> holes_;
-  double cost_, wall_force_, barrier_;
+  Crack crack_;
   double furthest_ = 0;  ///< m, beyond the bottom, that the furthest of the paths reaches
   std::optional<Onset> onset_;
 };

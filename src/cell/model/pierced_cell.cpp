@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <utility>
 
 #include "cell/contact/rigid_contact.h"
 #include "cell/contact/rounded_tip.h"
+#include "cell/mechanics/cohesive_wall.h"
 #include "cell/mechanics/relaxation.h"
+#include "cell/mechanics/surface_tension.h"
 #include "cell/mesh/pierced_section.h"
 #include "cell/penetration/hole_expansion.h"
 
@@ -31,24 +35,44 @@ constexpr double kAround = 0.5;    ///< opening of a rim that has the needle wit
 
 constexpr double kOnRim = 1e-6;  ///< of the hole's radius
 
+// Of a wall that is held closed, in radii of the tip.
+constexpr double kCohesiveRim = 0.2;    ///< fillet: at a sharp edge its tractions would have no finite resultant
+constexpr double kCohesiveSize = 0.07;  ///< of the elements, at most
+constexpr double kSizeOfOpening = 0.9;  ///< same, over the opening of the largest traction
+constexpr double kCohesiveDepth = 3.5;  ///< of these elements
+constexpr double kClosed = 500;         ///< stiffness of the closed wall, in shear moduli over the tip's radius
+
 PiercedSectionConfig sectionOf(const PiercedCellConfig& config) {
-  const double fine = std::pow(2, -config.level);
+  const double fine = std::pow(2, -config.level), tip = config.tip_radius;
   PiercedSectionConfig section;
-  section.radius = config.radius;
+  section.radii.clear();
+  for (const Scene::Layer& layer : config.layers) section.radii.push_back(layer.outer_radius);
   section.hole_radius = config.hole_radius;
   section.hole_length = config.hole_length;
-  section.contact_radius = 1.4 * config.tip_radius;
+  section.contact_radius = 1.4 * tip;
   section.held_radius = config.held_radius;
-  section.hole_size = fine * std::min(config.hole_radius / 2, config.tip_radius / 4);
+  section.hole_size = fine * std::min(config.hole_radius / 2, tip / 4);
+  if (config.cohesion) {
+    section.rim_radius = kCohesiveRim * tip;
+    section.hole_size = fine * std::min(kCohesiveSize * tip, kSizeOfOpening * config.cohesion->opening);
+    section.contact_radius = 0;
+    section.fine_length = kCohesiveDepth * tip;
+  }
   section.held_size = fine * config.held_radius / 4;
-  section.size = config.radius / 6 * std::sqrt(fine);
+  section.size = config.radius() / 6 * std::sqrt(fine);
   return section;
 }
 
-std::vector<std::shared_ptr<const Material>> onlyLayer(const MaterialConfig& material) {
-  std::vector<std::shared_ptr<const Material>> layers;
-  layers.push_back(makeMaterial(material));
-  return layers;
+std::vector<std::shared_ptr<const Material>> materialsOf(const PiercedCellConfig& config) {
+  std::vector<std::shared_ptr<const Material>> materials;
+  for (const Scene::Layer& layer : config.layers) materials.push_back(makeMaterial(layer.material));
+  return materials;
+}
+
+double largestModulus(const PiercedCellConfig& config) {
+  double modulus = 0;
+  for (const Scene::Layer& layer : config.layers) modulus = std::max(modulus, layer.material.young_modulus);
+  return modulus;
 }
 
 }  // namespace
@@ -56,7 +80,7 @@ std::vector<std::shared_ptr<const Material>> onlyLayer(const MaterialConfig& mat
 PiercedCell::PiercedCell(const PiercedCellConfig& config)
     : config_(config),
       body_(std::make_shared<LayeredBody<2>>(makePiercedSection(sectionOf(config)), ElementKind::kP2P0,
-                                             onlyLayer(config.material))) {
+                                             materialsOf(config))) {
   const RoundedTip tip = RoundedTip::make("hemisphere", config.tip_radius, 0);
   RigidContactConfig contact;
   contact.mode = config.sticking ? RigidContactConfig::Mode::kSticking : RigidContactConfig::Mode::kSliding;
@@ -64,18 +88,39 @@ PiercedCell::PiercedCell(const PiercedCellConfig& config)
   contact.slip_range = kSlipRange * config.tip_radius;
   if (contact.mode == RigidContactConfig::Mode::kSliding && contact.friction == 0)
     contact.hardening = kHardening * config.tip_radius;
-  contact.penalty = kStiffContact * config.material.young_modulus / config.tip_radius;
-  contact.origin.z() = tip.touchHeight(config.radius, Eigen::Vector2d::Zero());
+  contact.penalty = kStiffContact * largestModulus(config) / config.tip_radius;
+  contact.origin.z() = tip.touchHeight(config.radius(), Eigen::Vector2d::Zero());
   contact_ = std::make_shared<RigidContact<2>>(*body_, std::make_shared<RoundedTip>(tip), contact);
-  system_ = std::make_unique<EquilibriumSystem>(EquilibriumSystem::Terms{body_, contact_}, constraints(config),
-                                                SymmetricSolver::Method::kSimplicial);
-  path_config_.length = 2 * config.radius;
+  EquilibriumSystem::Terms terms = {body_, contact_};
+  bool at_rest = true;
+  for (std::size_t i = 0; i < config.layers.size(); ++i) {
+    const Scene::Layer& layer = config.layers[i];
+    if (layer.surface_tension == 0) continue;
+    terms.push_back(
+        std::make_shared<SurfaceTension<2>>(*body_, static_cast<int>(i), layer.outer_radius, layer.surface_tension));
+    at_rest = at_rest && config.hole_length == 0;
+  }
+  if (config.cohesion) {
+    const double shear = config.layers.front().material.young_modulus / 3;
+    terms.push_back(std::make_shared<CohesiveWall>(
+        *body_, CohesiveWallConfig{config.hole_radius, config.cohesion->toughness, config.cohesion->opening,
+                                   kClosed * shear / config.tip_radius}));
+  }
+  system_ =
+      std::make_unique<EquilibriumSystem>(std::move(terms), constraints(config), SymmetricSolver::Method::kSimplicial);
+  path_config_.length = 2 * config.radius();
   path_config_.first_step = config.tip_radius / 40;
   path_config_.largest_step = config.tip_radius / 6;
   path_config_.smallest_step = 1e-5 * config.tip_radius;
   path_config_.smooth = false;
   path_config_.easy = 8;
-  path_ = std::make_unique<LoadPath>(*system_, path_config_);
+  Eigen::VectorXd start = Eigen::VectorXd::Zero(body_->stateSize());
+  if (!at_rest) {
+    const Relaxation::Result result = Relaxation(*system_, {path_config_.length, kIterations}).relax(start);
+    if (!result.converged)
+      throw std::runtime_error("the pierced cell does not come to rest under its surfaces' tension: " + result.reason);
+  }
+  path_ = std::make_unique<LoadPath>(*system_, path_config_, start);
   const auto& nodes = body_->mesh().nodes;
   for (int node = 0; node < static_cast<int>(nodes.size()); ++node) {  // the highest on the axis
     if (nodes[node].x() == 0 && (bottom_ < 0 || nodes[node].y() > nodes[bottom_].y())) bottom_ = node;
@@ -101,7 +146,7 @@ Constraints PiercedCell::constraints(const PiercedCellConfig& config) const {
     bool held = true;
     for (int corner = 0; corner < 2; ++corner) {
       const Eigen::Vector2d& at = nodes[facet.nodes[corner]];
-      held = held && at.y() < 0 && at.x() <= kWithin * config.held_radius && at.norm() > 0.999 * config.radius;
+      held = held && at.y() < 0 && at.x() <= kWithin * config.held_radius && at.norm() > 0.999 * config.radius();
     }
     for (const int node : facet.nodes) {
       for (int k = 0; held && k < 2; ++k) result.entries[2 * node + k] = Constraints::kFixed;
@@ -114,7 +159,7 @@ bool PiercedCell::advance(double depth) { return follow({0, 0, -depth}); }
 
 bool PiercedCell::insert(double force, double pressing) {
   const double tip = config_.tip_radius, hole = config_.hole_radius, shallowest = config_.hole_length + kInto * tip;
-  const HoleExpansion expansion(*body_->materials().front(), config_.radius / tip);
+  const HoleExpansion expansion(materialAtBottom(), config_.radius() / tip);
   const auto opened = [&](double radius) {  // N, with which a long hole pushes a shaft of this radius out
     return radius > hole ? radius * radius * expansion.at(hole / radius).energy : 0;
   };
@@ -132,8 +177,16 @@ bool PiercedCell::insert(double force, double pressing) {
     if (!lead({next - tip, 0, -depth}) || (wanted > kFelt * last && !isAtBottom())) return false;
     radius = next;
   }
-  while (this->force() < force && depth < kDeepest * config_.radius && lead({0, 0, -depth})) depth += kFurther * tip;
+  while (this->force() < force && depth < kDeepest * config_.radius() && lead({0, 0, -depth})) depth += kFurther * tip;
   return isAtBottom() && isInside();
+}
+
+const Material& PiercedCell::materialAtBottom() const {
+  std::size_t layer = 0;
+  while (layer + 1 < config_.layers.size() &&
+         config_.layers[layer + 1].outer_radius > config_.radius() - config_.hole_length)
+    ++layer;
+  return *body_->materials()[layer];
 }
 
 bool PiercedCell::follow(const Eigen::Vector3d& target) {
@@ -175,7 +228,7 @@ double PiercedCell::depth() const { return -place().z(); }
 double PiercedCell::penetration() const { return contact_->penetration(); }
 int PiercedCell::unknowns() const { return system_->freeSize(); }
 double PiercedCell::bottom() const {
-  return config_.radius - body_->mesh().nodes[bottom_].y() - path_->state()[2 * bottom_ + 1];
+  return config_.radius() - body_->mesh().nodes[bottom_].y() - path_->state()[2 * bottom_ + 1];
 }
 std::vector<Eigen::Vector2d> PiercedCell::places() const {
   std::vector<Eigen::Vector2d> result = body_->mesh().nodes;

@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,28 +10,38 @@
 #include "cell/mechanics/equilibrium_system.h"
 #include "cell/mechanics/layered_body.h"
 #include "cell/mechanics/load_path.h"
+#include "cell/model/scene.h"
 
 namespace microinjection {
 
 template <int Dim>
 class RigidContact;
 
-/// A homogeneous cell, glued below, with a hole from its upper pole into which a needle with a hemispherical end goes.
-/// Metres, Pa.
+/// A cell, glued below, with a hole from its upper pole into which a needle with a hemispherical end goes. Metres, Pa.
 struct PiercedCellConfig {
-  MaterialConfig material;
-  double radius = 28e-6;       ///< m, of the cell
-  double held_radius = 5e-6;   ///< m, nodes of the lower surface within it do not move
-  double tip_radius = 3e-6;    ///< m
-  double hole_radius = 1e-6;   ///< m, undeformed, below the tip's
-  double hole_length = 10e-6;  ///< m, undeformed, from the pole; 0: the whole cell
-  double friction = 0;         ///< Coulomb's coefficient of needle and cell
-  bool sticking = false;       ///< what touches the needle sticks to it; of a whole cell
-  double level = 0;            ///< of refinement: the elements are halved by each
+  /// Tractions that hold the wall of the hole closed, see CohesiveWall.
+  struct Cohesion {
+    double toughness = 0;  ///< J/m^2
+    double opening = 0;    ///< m
+  };
+  std::vector<Scene::Layer> layers = {Scene::Layer()};  ///< outermost first
+  double held_radius = 5e-6;                            ///< m, nodes of the lower surface within it do not move
+  double tip_radius = 3e-6;                             ///< m
+  double hole_radius = 1e-6;                            ///< m, undeformed, below the tip's
+  double hole_length = 10e-6;                           ///< m, undeformed, from the pole; 0: the whole cell
+  double friction = 0;                                  ///< Coulomb's coefficient of needle and cell
+  bool sticking = false;                                ///< what touches the needle sticks to it; of a whole cell
+  double level = 0;                                     ///< of refinement: the elements are halved by each
+  std::optional<Cohesion> cohesion;                     ///< of a hole that nothing has opened yet; its rim is rounded
+
+  MaterialConfig& material() { return layers.front().material; }  ///< of the outermost layer
+  const MaterialConfig& material() const { return layers.front().material; }
+  double radius() const { return layers.front().outer_radius; }  ///< m, of the cell
 };
 
 /// The solution of such a cell in its section while the needle is led along the axis: the branch of equilibria that a
-/// puncture leads to (doc/design/puncture.md). Needle and hole touch by the contact of RigidContact.
+/// puncture leads to (doc/design/puncture.md). Needle and hole touch by the contact of RigidContact. The tension of a
+/// layer's sphere ends at the hole, and Laplace's pressure acts on the wall, too (SurfaceTension).
 class PiercedCell {
  public:
   explicit PiercedCell(const PiercedCellConfig& config);
@@ -70,6 +81,7 @@ class PiercedCell {
   bool jump(const Eigen::Vector3d& target);
   bool isAtBottom() const;
   Eigen::Vector3d place() const;
+  const Material& materialAtBottom() const;
 
   PiercedCellConfig config_;
   LoadPathConfig path_config_;

@@ -13,6 +13,7 @@ constexpr double kMouth = 1.5;  ///< radii of the tip, of way in which a hole ta
 constexpr int kEnergySteps = 32;
 constexpr int kFirstLengths = 64;       ///< that are tried where a membrane may stop a first hole
 constexpr double kUprightAxis = 0.999;  ///< cosine: the branch is that of an upright needle
+constexpr double kOnAxis = 0.5;         ///< tip radii from the axis: same
 constexpr double kAlone = 1e-6;         ///< of the branch's force
 constexpr double kGrows = 0.99;         ///< of the crack's cost, that the release of a hole is that has just grown
 constexpr double kKnownWay = 4;         ///< tip radii behind the onset, in which the branch's error is known
@@ -20,7 +21,7 @@ constexpr double kKnownWay = 4;         ///< tip radii behind the onset, in whic
 PunctureConfig punctureOf(const Scene& scene, const std::optional<PiercedBranch>& branch) {
   PunctureConfig config = scene.cell.puncture;
   if (!branch) return config;
-  config.shaft.adhesion += config.shaft.coefficient * branch->wallForce();
+  config.shaft.adhesion += config.shaft.coefficient * branch->crack().wall_force;
   return config;
 }
 
@@ -42,11 +43,13 @@ PuncturableCell::PuncturableCell(const Scene& scene, std::unique_ptr<CellModel> 
       shaft_(config_.shaft),
       fading_(config_.relaxation_time),
       branch_(std::move(branch)),
+      memory_(scene.cell.material().viscoelasticity.prony),
       pierced_error_(pierced_error) {
   invalid_reason_.reserve(200);
   if (tongue) bore_.emplace(boreConfig(scene), std::move(*tongue));
   if (!branch_) return;
   crack_.emplace(*branch_, config_.layers.front().toughness_rate);
+  if (branch_->onset() && tip_.taper > 0) taper_.emplace(scene, branch_->onset()->depth - branch_->onset()->length);
   config_.layers.front().force = crack_->onsetForce();
 }
 
@@ -79,10 +82,11 @@ std::optional<double> PuncturableCell::errorOf(const Eigen::Vector3d& force, con
   if (!fading_.at(pose.tip, pose.time).isZero(0)) return std::nullopt;
   if (!hole_) return cell_->contact() ? cell_->forceError() : std::optional(0.0);
   if (!pierced_error_ || pose.axis.z() < kUprightAxis || mouth_from_ != 0 || !branch_->onset()) return std::nullopt;
+  if (holes_[*hole_].position.head<2>().norm() > kOnAxis * tip_.radius) return std::nullopt;
   const double depth = insertion_.depth, length = holes_[*hole_].length;
   const PiercedBranch::State state = branch_->at(depth, length);
   const PiercedBranch::Resistance resistance = resistanceBefore();
-  const double cost = resistance.tougher * branch_->cost() + resistance.at(length);
+  const double cost = resistance.tougher * branch_->costAt(length) + resistance.at(length);
   const bool grows = state.release > kGrows * cost && depth < branch_->onset()->depth + kKnownWay * tip_.radius;
   const bool alone = (force - state.force * pose.axis).norm() < kAlone * std::abs(state.force);
   return grows && alone ? std::optional(*pierced_error_ * std::abs(state.force)) : std::nullopt;
@@ -131,6 +135,7 @@ TipForce PuncturableCell::computeForce(const Pose& pose) {
     if (open) {
       work_ = 0;
       strength_ = 1;
+      memory_.reset();
       enter(*hole, pose);
       mouth_from_ = insertion_.depth;
     }
@@ -186,7 +191,8 @@ double PuncturableCell::firstLength(double depth) const {
   const double step = (onset - least) / kFirstLengths;
   double length = onset;
   for (int i = 0; i < kFirstLengths && resistance.at(length) > 0; ++i, length -= step) {
-    if (branch_->at(depth, length).release > resistance.tougher * branch_->cost() + resistance.at(length)) break;
+    if (branch_->at(depth, length).release > resistance.tougher * branch_->costAt(length) + resistance.at(length))
+      break;
   }
   return branch_->grown(depth, std::max(length, least), resistance);
 }
@@ -196,10 +202,13 @@ void PuncturableCell::loseToBranch(const PunctureHoles::Hole& opened, const Eige
   const double depth = (opened.position - pose.tip).dot(pose.axis);
   mouth_from_ = 0;
   if (openingEnergy(depth, opened.length) > work) mouth_from_ = depth;
+  const Eigen::Vector3d opening = openingForce(depth, opened.length) * pose.axis;
+  const double elastic = branch_->whole(depth).force, viscous = std::max(force.dot(pose.axis) - elastic, 0.0);
+  memory_.start(opening, elastic > 0 ? Eigen::Vector3d(viscous / elastic * opening) : Eigen::Vector3d::Zero());
   const double released = branch_->whole(depth).energy - branch_->at(depth, opened.length).energy -
-                          crack_->tougher() * branch_->cost() * opened.length - branch_->barrier();
+                          crack_->tougher() * branch_->costUntil(opened.length) - branch_->crack().barrier;
   const double kept = work - openingEnergy(depth, opened.length);
-  fading_.start(force - openingForce(depth, opened.length) * pose.axis, pose.tip, std::min(released, kept), pose.time);
+  fading_.start(force - opening - memory_.viscous(), pose.tip, std::min(released, kept), pose.time);
 }
 
 void PuncturableCell::followRadius() {
@@ -243,17 +252,24 @@ Eigen::Vector3d PuncturableCell::forceInside(const Pose& pose) {
 void PuncturableCell::failByBranch(const Eigen::Vector3d& force, const Pose& pose) {
   PunctureHoles::Hole& hole = holes_[*hole_];
   const Layer& layer = config_.layers[hole.layers];
+  if (std::isfinite(layer.toughness)) {
+    if (hole.length > branch_->crack().parts[hole.layers].from) failLayer(pose);
+    return;
+  }
   const double depth = insertion_.depth;
   const PiercedBranch::Resistance resistance = resistanceBefore();
   // No more than what the cell presses the tip with: a needle that goes back leaves the membrane.
-  const double pressed = branch_->at(depth, hole.length).release - resistance.tougher * branch_->cost();
+  const double pressed = branch_->at(depth, hole.length).release - resistance.tougher * branch_->costAt(hole.length);
   const double push = std::clamp(pressed, 0.0, resistance.at(hole.length));
   coverBore(push > 0 ? hole.layers : -1);
   if (!drawn_through_ && !fails(layer, push, push / layer.stiffness, strength_ * strength())) return;
   const double before = openingForce(depth, hole.length), work = workTo(force, pose.tip);
+  const Eigen::Vector3d viscous = memory_.viscous();
   failLayer(pose);
   pierce(pose);
-  const double lost = before - openingForce(depth, hole.length), stored = openingEnergy(depth, hole.length);
+  const double after = openingForce(depth, hole.length), lost = before - after;
+  const double stored = openingEnergy(depth, hole.length);
+  memory_.start(after * pose.axis, viscous);
   fading_.start(fading_.at(pose.tip, pose.time) + lost * pose.axis, pose.tip, work - stored, pose.time);
 }
 
@@ -262,7 +278,9 @@ double PuncturableCell::pierce(const Pose& pose) {
   const double depth = insertion_.depth;
   hole.length = branch_->grown(depth, hole.length, resistanceBefore());
   cell_->step(pose.tip + std::min(hole.length, depth) * pose.axis, pose.axis, pose.time);
-  return openingForce(depth, hole.length);
+  const double elastic = openingForce(depth, hole.length);
+  const double viscous = memory_.step(elastic * pose.axis, pose.duration).dot(pose.axis);
+  return viscous == 0 ? elastic : std::max(elastic + viscous, 0.0);  // relaxed so far that the cell would pull
 }
 
 PiercedBranch::Resistance PuncturableCell::resistanceBefore() const {
@@ -273,7 +291,8 @@ PiercedBranch::Resistance PuncturableCell::resistanceBefore() const {
 /// A needle that has made the hole stands in it with the whole of its force.
 double PuncturableCell::openingForce(double depth, double length) const {
   const double mouth = std::min(kMouth * tip_.radius, branch_->onset() ? branch_->onset()->depth : HUGE_VAL);
-  return std::clamp((depth - mouth_from_) / mouth, 0.0, 1.0) * branch_->at(depth, length).force;
+  const double force = branch_->at(depth, length).force + (taper_ ? taper_->force(depth) : 0);
+  return std::clamp((depth - mouth_from_) / mouth, 0.0, 1.0) * force;
 }
 
 /// By the trapezoidal rule.

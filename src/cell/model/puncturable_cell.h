@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/latest_value.h"
+#include "cell/material/force_memory.h"
 #include "cell/model/aspirated_membrane.h"
 #include "cell/model/bore_suction.h"
 #include "cell/model/cell_model.h"
@@ -18,6 +19,7 @@
 #include "cell/model/puncture_holes.h"
 #include "cell/model/scene.h"
 #include "cell/model/shaft_resistance.h"
+#include "cell/model/shaft_taper.h"
 
 namespace microinjection {
 
@@ -58,6 +60,9 @@ namespace microinjection {
 /// aspiration says (AspiratedMembrane); behind the last layer the cytoplasm flows. A tongue of a bore is too small to
 /// change the force on the needle. A hole that the needle has left reseals, if the scene says so: the cell is then
 /// touched there as elsewhere, and its layers fail at a share of their limits that grows with the hole's age.
+///
+/// In a viscoelastic cell the branch's force has a memory (ForceMemory) as that of the whole cell has. What the whole
+/// cell's force was above its elastic one at the break goes along, in proportion to what is left of the latter.
 ///
 /// A pulse of a piezo-driven needle (StrokeResistance) is over before the hand can feel it. It adds its force to that
 /// of the layer before the tip when it asks whether that fails, and its work is the piezo's.
@@ -113,9 +118,9 @@ class PuncturableCell : public CellModel {
   PiercedBranch::Resistance resistanceBefore() const;  ///< of the crack, before the tip in its hole
   void failByBranch(const Eigen::Vector3d& force, const Pose& pose);
   double gapsTo(int layer) const;  ///< m, of all before it and its own, at rest
-  /// N along the pipette, of the branch, whose hole grows; and the dent that is drawn.
+  /// N along the pipette, of the branch, whose hole grows, with its memory; and the dent that is drawn.
   double pierce(const Pose& pose);
-  double openingForce(double depth, double length) const;   ///< N along the pipette, of the branch
+  double openingForce(double depth, double length) const;   ///< N along the pipette, of the branch and the taper
   double openingEnergy(double depth, double length) const;  ///< J, that this force has stored since the mouth
   /// What is lost where the branch begins. @param work J, of the needle so far
   void loseToBranch(const PunctureHoles::Hole& opened, const Eigen::Vector3d& force, double work, const Pose& pose);
@@ -154,6 +159,8 @@ class PuncturableCell : public CellModel {
   std::optional<PiezoPulse> pulse_;  ///< of the next step
   std::optional<PiercedBranch> branch_;
   std::optional<CrackSpeed> crack_;  ///< of the branch
+  std::optional<ShaftTaper> taper_;  ///< same
+  ForceMemory memory_;               ///< of the branch's force
   std::optional<double> pierced_error_, force_error_;
   double mouth_from_ = 0;  ///< m below the surface, where the needle has entered the hole by the branch
   std::optional<BoreSuction> bore_;

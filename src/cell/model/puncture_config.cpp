@@ -10,20 +10,27 @@ namespace {
 
 const Range kRateExponents = Range::closed(0.01, 2);
 
+const char* const kWithToughness[] = {"barrier", "strength", "toughness_rate"};
+
 void readToughness(ConfigReader& reader, PunctureConfig::Layer& layer) {
   readQuantity(reader, "toughness", layer.toughness, Range::positive(), "J/m^2");
   readQuantity(reader, "barrier", layer.barrier, Range::nonNegative(), "J");
-  for (const char* key : {"barrier", "toughness_rate"}) {
+  readQuantity(reader, "strength", layer.strength, Range::positive(), "Pa");
+  for (const char* key : kWithToughness) {
     if (reader.has(key) && !reader.has("toughness"))
       reader.error(key, "must be left out: it belongs to toughness only");
   }
+  if (reader.has("strength") && reader.has("toughness_rate"))
+    reader.error("strength", "must be left out where there is a toughness_rate: how it grows with it is not known");
   if (!reader.has("toughness_rate")) return;
   ConfigReader rate = reader.section("toughness_rate");
   readQuantity(rate, "speed", layer.toughness_rate.speed, Range::positive(), "m/s", ConfigReader::kRequired);
   readQuantity(rate, "exponent", layer.toughness_rate.exponent, kRateExponents, "", ConfigReader::kRequired);
 }
 
-void readLayer(ConfigReader reader, bool outermost, PunctureConfig::Layer& layer) {
+/// @param before the layer outside of it; null: it is the outermost
+void readLayer(ConfigReader reader, const PunctureConfig::Layer* before, PunctureConfig::Layer& layer) {
+  const bool outermost = before == nullptr;
   reader.text("name", layer.name, ConfigReader::kRequired);
   readQuantity(reader, "force", layer.force, Range::positive(), "N");
   readQuantity(reader, "depth", layer.depth, Range::positive(), "m");
@@ -41,8 +48,14 @@ void readLayer(ConfigReader reader, bool outermost, PunctureConfig::Layer& layer
       reader.error(key, "must be left out: the outermost layer is the cell that the needle touches");
     }
   }
-  if (!outermost && reader.has("toughness"))
-    reader.error("toughness", "must be left out: only the outermost layer is pierced by mechanics");
+  if (!outermost && reader.has("toughness")) {
+    if (std::isinf(before->toughness))
+      reader.error("toughness", "must be left out: the layer before it is not pierced by mechanics");
+    for (const char* key : {"barrier", "strength", "toughness_rate", "stiffness", "gap", "aspiration"}) {
+      if (reader.has(key)) reader.error(key, "must be left out: a layer of the cell behind the outermost has none");
+    }
+    return;
+  }
   if (reader.has("aspiration")) layer.aspiration = AspirationConfig::read(reader.section("aspiration"));
   if (outermost) return;
   readQuantity(reader, "stiffness", layer.stiffness, Range::positive(), "N/m", ConfigReader::kRequired);
@@ -71,7 +84,9 @@ void checkMembrane(const PunctureConfig::Layer& layer, const std::string& path, 
   errors.require(std::isinf(layer.strain) || (std::isfinite(layer.dimple_radius) && layer.dimple_radius > tip_radius),
                  path + "dimple_radius", layer.dimple_radius, " m", "above needle/tip/radius");
   errors.require(Range::nonNegative(), path + "gap", layer.gap, " m");
-  errors.require(outermost || (std::isfinite(layer.stiffness) && layer.stiffness > 0), path + "stiffness",
+  errors.require(layer.strength > 0, path + "strength", layer.strength, " Pa", "positive (Pa)");
+  const bool membrane = !outermost && std::isinf(layer.toughness);
+  errors.require(!membrane || (std::isfinite(layer.stiffness) && layer.stiffness > 0), path + "stiffness",
                  layer.stiffness, " N/m", "positive (N/m)");
 }
 
@@ -86,6 +101,14 @@ bool PunctureConfig::Layer::fails(double push, double indentation, double tip_ra
          (std::isfinite(strain) && strainAt(indentation, tip_radius) >= strength * strain);
 }
 
+double PunctureConfig::opening() const { return layers.front().toughness / (M_E * layers.front().strength); }
+
+int PunctureConfig::toughLayers() const {
+  int count = 0;
+  while (count < static_cast<int>(layers.size()) && std::isfinite(layers[count].toughness)) ++count;
+  return count;
+}
+
 PunctureConfig PunctureConfig::atForce(double force) {
   PunctureConfig config;
   config.layers.emplace_back().force = force;
@@ -95,11 +118,11 @@ PunctureConfig PunctureConfig::atForce(double force) {
 void PunctureConfig::read(ConfigReader reader) {
   if (reader.has("layers")) {
     for (ConfigReader& layer : reader.sections("layers")) {
-      layers.emplace_back();
-      readLayer(layer, layers.size() == 1, layers.back());
+      const std::optional<Layer> before = layers.empty() ? std::nullopt : std::optional(layers.back());
+      readLayer(layer, before ? &*before : nullptr, layers.emplace_back());
     }
     if (layers.empty()) reader.error("layers", "must have at least one layer");
-    for (const char* key : {"force", "toughness", "toughness_rate", "barrier"}) {
+    for (const char* key : {"force", "toughness", "toughness_rate", "barrier", "strength"}) {
       if (reader.has(key)) reader.error(key, "must be left out where there are layers: each has its own");
     }
   } else if (reader.has("force") && (reader.has("toughness") || reader.has("toughness_rate"))) {
@@ -107,7 +130,8 @@ void PunctureConfig::read(ConfigReader reader) {
                  "must be left out where the force of the puncture is given");
   } else if (reader.has("force")) {
     readQuantity(reader, "force", layers.emplace_back().force, Range::positive(), "N");
-  } else if (reader.has("toughness") || reader.has("toughness_rate") || reader.has("barrier")) {
+  } else if (reader.has("toughness") || reader.has("toughness_rate") || reader.has("barrier") ||
+             reader.has("strength")) {
     readToughness(reader, layers.emplace_back());
   }
   readShaft(reader.section("shaft"), shaft);

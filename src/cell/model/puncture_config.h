@@ -25,13 +25,17 @@ struct PunctureConfig {
     double force = std::numeric_limits<double>::infinity();   ///< N along the pipette
     double depth = std::numeric_limits<double>::infinity();   ///< m, indentation by the tip
     double strain = std::numeric_limits<double>::infinity();  ///< nominal, see strainAt()
-    /// J/m^2, of crack: the solid is pierced by mechanics (PiercedBranch), of the outermost layer only; infinite: not.
+    /// J/m^2, of crack: the solid is pierced by mechanics (PiercedBranch). Such layers are those of the cell, from the
+    /// outermost on; infinite: not.
     double toughness = std::numeric_limits<double>::infinity();
     ToughnessRate toughness_rate;
     double barrier = 0;        ///< J, with toughness: beside the crack, to begin a hole
     double dimple_radius = 0;  ///< m, with strain: outer radius of the dent, from the pipette's axis
     double stiffness = 0;      ///< N/m along the pipette; 0 for the outermost layer, whose force is the cell's
     double gap = 0;            ///< m ahead of the tip when the previous layer fails; 0 for the outermost layer
+    /// Pa, with toughness, of the outermost layer: traction at which its material breaks, see CohesiveWall; infinite:
+    /// the balance of energy alone decides where it does.
+    double strength = std::numeric_limits<double>::infinity();
     /// How suction in the needle's bore breaks it; none: it does not, only the limits above count.
     std::optional<AspirationConfig> aspiration;
 
@@ -61,6 +65,10 @@ struct PunctureConfig {
   double cytoplasm_viscosity = 0.2;  ///< Pa s, of what flows into an aspirating needle; illustrative
   /// s, in which a hole that the needle has left regains all but 1/e of its layers' limits; infinite: it stays open.
   double resealing_time = std::numeric_limits<double>::infinity();
+
+  /// Of the outermost layer, m, at which the traction that holds a crack closed is largest; 0: without a strength.
+  double opening() const;
+  int toughLayers() const;  ///< from the outermost on, pierced by mechanics
 
   /// One layer, which fails at `force`, N.
   static PunctureConfig atForce(double force);

@@ -157,6 +157,7 @@ void readNeedle(ConfigReader needle, Scene::Needle& value) {
   if (!has_edge && !value.tip.shape.empty() && tip.has("edge_radius")) {
     tip.error("edge_radius", "must be left out: it belongs to shape rounded_flat only");
   }
+  readQuantity(tip, "taper", value.tip.taper, Range::nonNegative(), "rad");
   if (needle.has("bore_radius"))
     readQuantity(needle, "bore_radius", value.bore_radius.emplace(), Range::positive(), "m");
   ConfigReader contact = needle.section("contact");

@@ -88,6 +88,7 @@ struct Scene {
     std::string shape = "disc";  ///< one of tipShapes()
     double radius = 3e-6;        ///< m, of the disc or of the shaft
     double edge_radius = 0;      ///< m, of rounded_flat only, in (0, radius]
+    double taper = 0;            ///< rad, of the shaft's wall to its axis; felt in a cell that is pierced by mechanics
 
     bool rounded() const { return shape != "disc"; }
     double edgeRadius() const { return shape == "hemisphere" ? radius : edge_radius; }  ///< m, of any shape; disc: 0

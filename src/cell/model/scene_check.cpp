@@ -13,7 +13,8 @@ constexpr double kRounding = 1e-9;  // relative
 
 /// Largest distance of circles from the axis, over the cell's radius. Further out the surface is
 /// too steep for a good mesh.
-constexpr double kSharpest = 0.05;  // radius of the rounded edge, over the tip's radius
+constexpr double kSharpest = 0.05;      // radius of the rounded edge, over the tip's radius
+constexpr double kSteepestTaper = 0.3;  // rad
 constexpr double kReach = 0.95;
 constexpr double kWidestBore = 0.95;  // over the tip's radius
 
@@ -85,6 +86,7 @@ void checkTip(const Scene::Tip& tip, double cell_radius, ConfigErrors& errors) {
     errors.require(tip.edge_radius == 0, "needle/tip/edge_radius", tip.edge_radius, " m",
                    "left out: it belongs to rounded_flat only");
   }
+  errors.require(Range::closed(0, kSteepestTaper), "needle/tip/taper", tip.taper, " rad");
 }
 
 void checkAdhesion(const Scene::Needle& needle, ConfigErrors& errors) {
@@ -166,6 +168,8 @@ void checkScene(const Scene& scene) {
   ConfigErrors errors;
   checkCell(scene.cell, errors);
   scene.cell.puncture.check(scene.needle.tip.radius, errors);
+  errors.require(scene.needle.tip.taper == 0 || scene.cell.puncture.toughLayers() > 0, "needle/tip/taper",
+                 scene.needle.tip.taper, " rad", "left out: it is felt in a cell with cell/puncture/toughness only");
   const double contact_radius = scene.holding_pipette.contact_radius;
   const double reach = kReach * scene.radius();
   if (scene.cell.tensegrity) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,7 +11,8 @@
 
 namespace microinjection {
 
-/// The scene's outermost layer is pierced by mechanics: its toughness is given, not the force at which it fails.
+/// The scene's cell is pierced by mechanics: the toughness of its outermost layer is given, not the force at which it
+/// fails, and maybe that of those behind it.
 bool piercedByMechanics(const Scene& scene);
 
 /// What a long hole through the scene's cell costs. @pre piercedByMechanics(scene)
@@ -30,13 +32,17 @@ PiercedBranch storedPiercedBranch(const Scene& scene, const std::function<void(i
 struct PiercedPaths {
   std::vector<PiercedBranch::Knot> whole;
   std::vector<PiercedBranch::Hole> holes;
+  double gives_way = 0;  ///< m, depth at which the strength of the outermost layer is exceeded; 0: it has none
 };
 
 /// With the toughness, barrier and wall of the scene. @throws ConfigError as solvePiercedBranch()
 PiercedBranch branchOf(PiercedPaths paths, const Scene& scene);
 
-/// For the user: where it is pierced, and the force 3 tip radii further on, beside that of the long hole in the same
-/// material (DeepPenetration), which is exact far behind the surface.
+/// Relative difference of the branch's force 3 tip radii behind the onset from that of the long hole in the material
+/// there, which is exact far behind the surface. None where nothing pierces it.
+std::optional<double> distanceFromLongHole(const PiercedBranch& branch, const Scene& scene);
+
+/// For the user: where it is pierced, and the force 3 tip radii further on, with that difference.
 std::string describePuncture(const PiercedBranch& branch, const Scene& scene);
 
 }  // namespace microinjection

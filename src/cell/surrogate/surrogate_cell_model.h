@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "base/latest_value.h"
+#include "cell/material/force_memory.h"
 #include "cell/model/cell_model.h"
 #include "cell/surrogate/changing_contact.h"
-#include "cell/surrogate/force_memory.h"
 #include "cell/surrogate/surrogate_contact.h"
 #include "cell/surrogate/work_limit.h"
 

@@ -8,7 +8,7 @@
 
 #include "cell/estimation/family_member.h"
 #include "cell/family/family_cell.h"
-#include "cell/surrogate/force_memory.h"
+#include "cell/material/force_memory.h"
 
 namespace microinjection {
 namespace {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "cell/mechanics/term_derivatives.h"
+#include "cell/mesh/pierced_section.h"
 #include "cell/mesh/round_shapes.h"
 
 namespace microinjection {
@@ -244,6 +245,35 @@ TYPED_TEST(SurfaceTensionTest, RefusesWhatItCannotBe) {
   EXPECT_THROW(Surface(body, 0, 0, kTension), std::invalid_argument);
   EXPECT_THROW(Surface(body, 0, kTenseRadii[0], -kTension), std::invalid_argument);
   EXPECT_THROW(Surface(body, 0, kTenseRadii[0], std::numeric_limits<double>::quiet_NaN()), std::invalid_argument);
+}
+
+/// A hole of 2 um through both layers.
+TEST(PiercedSurfaceTension, DerivativesAreThoseOfTheEnergyAndTheHoleIsMissing) {
+  PiercedSectionConfig section;
+  section.radii = kTenseRadii;
+  section.hole_radius = 2e-6;
+  section.hole_length = 40e-6;
+  MaterialConfig config;
+  config.model = "neo_hookean";
+  const LayeredBody<2> body(makePiercedSection(section), ElementKind::kP2P0,
+                            LayeredBody<2>::Materials(2, std::shared_ptr<const Material>(makeMaterial(config))));
+  for (const int layer : {0, 1}) {
+    const double radius = kTenseRadii[layer], cap = 2 * M_PI * radius * (radius - std::sqrt(radius * radius - 4e-12));
+    const SurfaceTension<2> surface(body, layer, radius, kTension);
+    double energy = 0;
+    LocalEnergy local;
+    const Eigen::VectorXd undeformed = Eigen::VectorXd::Zero(body.stateSize());
+    for (int i = 0; i < surface.elementCount(); ++i) {
+      ASSERT_TRUE(surface.evaluate(i, undeformed, Order::kEnergy, local));
+      energy += local.energy;
+    }
+    EXPECT_NEAR(energy, -kTension * cap, 0.02 * kTension * cap) << layer;
+    EXPECT_NEAR(surface.area(undeformed), 4 * M_PI * radius * radius - cap, 1e-5 * 4 * M_PI * radius * radius);
+    std::mt19937 generator(5);
+    std::uniform_real_distribution<double> entry(-0.1e-6, 0.1e-6);
+    const Eigen::VectorXd state = Eigen::VectorXd::NullaryExpr(body.stateSize(), [&] { return entry(generator); });
+    EXPECT_GT(expectDerivatives(surface, state, 1e-10, 1e-5), 10);
+  }
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ TEST(PiercedBranch, NoCrackBeginsBeyondTheEndOfAPath) {
     return knots;
   };
   for (const double deepest : {10e-6, 40e-6}) {
-    const PiercedBranch branch(path(40e-6), {{1e-6, path(deepest)}, {3e-6, path(deepest)}}, kStiffCrack);
+    const PiercedBranch branch(path(40e-6), {{1e-6, path(deepest)}, {3e-6, path(deepest)}}, {{{0, kStiffCrack}}});
     const double excess = branch.at(40e-6, 3e-6).energy + kStiffCrack * 3e-6 - branch.whole(40e-6).energy;
     EXPECT_EQ(excess < 0, deepest < 40e-6) << "the test would not notice";
     EXPECT_FALSE(branch.onset()) << deepest;
@@ -69,7 +69,7 @@ TEST(PiercedBranch, BeginsOnlyWhereTheNeedleIsKnownToStayInTheHole) {
   for (const double length : {1e-6, 3e-6, 7e-6, 15e-6, 30e-6}) holes.push_back({length, made.path(length)});
   auto& knots = holes.front().knots;
   knots.erase(knots.begin(), knots.begin() + 12);
-  const PiercedBranch late(made.path(0), holes, kCrack);
+  const PiercedBranch late(made.path(0), holes, {{{0, kCrack}}});
   EXPECT_LT(late.at(0, 1e-6).energy + kCrack * 1e-6, 0) << "the test would not notice";
   ASSERT_TRUE(late.onset());
   const double depth = closedOnset(kCrack, 0);
@@ -101,7 +101,7 @@ TEST(PiercedBranch, HolesBeyondTheSolvedLengthsHaveForcesThatAreSlopes) {
     made.spring *= 1 + length / 20e-6;
     holes.push_back({length, made.path(length)});
   }
-  const PiercedBranch tough(springPath(0), holes, kCrack);
+  const PiercedBranch tough(springPath(0), holes, {{{0, kCrack}}});
   constexpr double kStep = 1e-9;
   for (const double length : {0.6e-6, 2e-6, 11e-6, 19e-6}) {
     const double depth = length + 7.3e-6;
@@ -127,13 +127,45 @@ TEST(PiercedBranch, TheHoleGrowsWithTheNeedleAndNeverShrinks) {
   EXPECT_NEAR(tough.at(length - 20e-6, length).force, kOpenedHole, 1e-9 * kCrack) << "below the first knot";
 }
 
+TEST(PiercedBranch, EachLayerOfTheCellHasItsOwnCost) {
+  const double border = 25e-6, inner = kCrack / 4;
+  const PiercedBranch branch = SpringBranch().make(border, inner);
+  EXPECT_EQ(branch.costAt(border), kCrack);
+  EXPECT_EQ(branch.costAt(1.01 * border), inner);
+  EXPECT_NEAR(branch.costUntil(border + 4e-6), kCrack * border + inner * 4e-6, 1e-9 * kCrack * border);
+  double length = branch.onset()->length;
+  ASSERT_LT(length, border);
+  for (double depth = branch.onset()->depth; depth < 45e-6; depth += 0.2e-6) {
+    length = branch.grown(depth, length);
+    const double cost = length < border ? kCrack : inner;
+    EXPECT_NEAR(length, depth - cost / kBottom, length < border ? 1e-9 : 0.1e-6) << depth;
+  }
+  EXPECT_GT(length, 40e-6);
+  EXPECT_NEAR(branch.tougher(2).costUntil(30e-6), 2 * branch.costUntil(30e-6), 1e-9 * branch.costUntil(30e-6));
+}
+
+TEST(PiercedBranch, AStrengthThatIsExceededDecidesInPlaceOfTheEnergy) {
+  const SpringBranch made;
+  for (const double share : {0.9, 1.2}) {
+    PiercedBranch::Crack crack{{{0, kCrack}}};
+    crack.gives_way = share * closedOnset(kCrack, 0);
+    const PiercedBranch branch(made.path(0), made.make().holes(), crack);
+    ASSERT_TRUE(branch.onset());
+    EXPECT_EQ(branch.onset()->depth, crack.gives_way);
+    EXPECT_NEAR(branch.onset()->force, kBottom * crack.gives_way, 1e-3 * kCrack);
+    EXPECT_NEAR(branch.onset()->pierced_force, kOpenedHole + kCrack, 1e-3 * kCrack);
+  }
+}
+
 TEST(PiercedBranch, RefusesPathsThatDoNotRise) {
   const std::vector<PiercedBranch::Knot> twice = {{0, 0, 0}, {0, 1e-6, 0}};
-  EXPECT_THROW(PiercedBranch(twice, {{1e-6, springPath(1e-6)}, {2e-6, springPath(2e-6)}}, kCrack),
-               std::invalid_argument);
-  EXPECT_THROW(PiercedBranch(springPath(0), {{2e-6, springPath(2e-6)}, {1e-6, springPath(1e-6)}}, kCrack),
-               std::invalid_argument);
-  EXPECT_THROW(PiercedBranch(springPath(0), {{1e-6, springPath(1e-6)}}, kCrack), std::invalid_argument);
+  const PiercedBranch::Crack crack{{{0, kCrack}}};
+  const std::vector<PiercedBranch::Hole> holes = {{1e-6, springPath(1e-6)}, {2e-6, springPath(2e-6)}};
+  EXPECT_THROW(PiercedBranch(twice, holes, crack), std::invalid_argument);
+  EXPECT_THROW(PiercedBranch(springPath(0), {holes[1], holes[0]}, crack), std::invalid_argument);
+  EXPECT_THROW(PiercedBranch(springPath(0), {holes[0]}, crack), std::invalid_argument);
+  EXPECT_THROW(PiercedBranch(springPath(0), holes, {{{1e-6, kCrack}}}), std::invalid_argument);
+  EXPECT_THROW(PiercedBranch(springPath(0), holes, {{{0, kCrack}, {0, kCrack}}}), std::invalid_argument);
   EXPECT_THROW(springBranch(std::numeric_limits<double>::quiet_NaN()), std::invalid_argument);
 }
 

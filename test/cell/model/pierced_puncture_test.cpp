@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "cell/model/puncture_drive.h"
 #include "cell/model/spring_branch.h"
@@ -288,11 +289,102 @@ TEST(PiercedPuncture, ANeedleThatFindsItsHoleGetsNothingForIt) {
 
 TEST(PiercedPuncture, WithdrawnBeforeTheBreakItIsWhole) {
   const SpringBranch branch;
+  const double onset = onsetForce(branch) / branch.spring;
   PunctureDrive needle(tough(), 1000, branch.make());
-  needle.toDepth(0.9 * onsetForce(branch) / branch.spring);
+  needle.toDepth(0.999 * onset);
   needle.toDepth(-1e-6);
   EXPECT_EQ(needle.layers(), 0);
   EXPECT_NEAR(needle.work, 0, 1e-15);
+  needle.toDepth(1.001 * onset);
+  EXPECT_EQ(needle.layers(), 1);
+}
+
+/// The second layer is the cell's own: it fails when the hole comes to it, and no spring stands for it.
+TEST(PiercedPuncture, TheCellsNextLayerFailsWhereTheHoleComesToIt) {
+  PunctureConfig config = tough();
+  config.layers.emplace_back().name = "ooplasm";
+  config.layers.back().toughness = 0.25;
+  const SpringBranch branch;
+  const double border = 20e-6, inner = branch.cost / 4;
+  PunctureDrive needle(config, 1000, branch.make(border, inner));
+  needle.toDepth(border + 0.95 * branch.cost / branch.spring);
+  EXPECT_EQ(needle.layers(), 1);
+  EXPECT_NEAR(needle.force.z(), branch.opened + branch.cost, 0.01 * branch.cost);
+  needle.toDepth(border + 1.2 * branch.cost / branch.spring);
+  EXPECT_EQ(needle.layers(), 2);
+  EXPECT_NEAR(needle.rest(0.05), branch.opened + inner, 0.02 * branch.cost);
+  needle.toDepth(-1e-6);
+  EXPECT_GE(needle.least_work, 0);
+}
+
+PronyTerm relaxing() { return {0.5, 0.2}; }  // s
+
+/// The force of the break has what the whole cell's viscosity adds; what is left of it relaxes while the needle rests.
+TEST(PiercedPuncture, BehindTheBreakTheForceOfAViscousCellRelaxes) {
+  const SpringBranch branch;
+  PunctureDrive needle(tough(), 1000, branch.make(), {}, relaxing());
+  needle.spring->viscous = 0.3;  // of its elastic force
+  while (needle.layers() == 0) needle.toDepth(kTop - needle.tip.z() + 0.02e-6);
+  const double steady = branch.opened + branch.cost;
+  const double early = needle.rest(0.03);
+  EXPECT_GT(early, 1.1 * needle.rest(0.2));
+  const double dent = needle.cell->insertion().depth - needle.holeLength();
+  EXPECT_NEAR(needle.rest(3), branch.opened + branch.spring * dent, 1e-3 * steady);
+  needle.toDepth(-1e-6);
+  EXPECT_GE(needle.least_work, 0);
+}
+
+TEST(PiercedPuncture, OnNoWayDoesTheNeedleGetMoreThanItGave) {
+  std::mt19937 random(11);
+  const auto draw = [&](double from, double to) { return from + (to - from) * (random() / 4294967296.0); };
+  for (int i = 0; i < 60; ++i) {
+    SpringBranch branch;
+    branch.cost = draw(0.1e-6, 1e-6);
+    PunctureConfig config = tough();
+    config.resealing_time = i % 2 ? 1 : HUGE_VAL;
+    const PronyTerm prony{draw(0, 1), std::exp(draw(std::log(0.01), std::log(3)))};
+    PunctureDrive needle(config, 1000, branch.make(), {}, prony);
+    for (int turn = 0; turn < 12; ++turn) needle.toDepth(draw(-2e-6, 42e-6), draw(20e-6, 300e-6));
+    needle.toDepth(-2e-6);
+    EXPECT_GE(needle.least_work, -1e-3 * branch.cost * 40e-6) << i;
+  }
+}
+
+/// 50 degrees from the pole, with an upright needle: the branch is the pole's, so that no error is told.
+TEST(PiercedPuncture, FarFromThePoleItBreaksWithoutAKickAndTellsNoError) {
+  const SpringBranch branch;
+  PunctureDrive needle(tough(), 1000, branch.make(), 0.03);
+  needle.moveTo({kRadius * std::sin(50 * M_PI / 180), 0, kTop + 5e-6});
+  const double surface = std::sqrt(kRadius * kRadius - needle.tip.x() * needle.tip.x());
+  needle.moveTo({needle.tip.x(), 0, surface + 4e-6});
+  double last = needle.force.z(), jump = 0;
+  while (needle.tip.z() > surface - 35e-6) {
+    needle.moveTo({needle.tip.x(), 0, needle.tip.z() - 0.02e-6});
+    jump = std::max(jump, std::abs(needle.force.z() - last));
+    last = needle.force.z();
+  }
+  EXPECT_EQ(needle.layers(), 1);
+  needle.rest(0.1);
+  EXPECT_FALSE(needle.cell->forceError());
+  EXPECT_LT(jump, 0.5 * onsetForce(branch)) << "what is lost fades";
+  needle.moveTo({needle.tip.x(), 0, kTop + 5e-6});
+  EXPECT_GE(needle.least_work, 0);
+}
+
+/// 5 um beside it, more than the tip's radius: a hole does not weaken the layer there.
+TEST(PiercedPuncture, BesideAnOldHoleTheLayerIsWhole) {
+  const SpringBranch branch;
+  PunctureDrive needle(tough(), 1000, branch.make());
+  needle.toDepth(30e-6);
+  needle.toDepth(-5e-6);
+  ASSERT_EQ(needle.layers(), 1);
+  needle.moveTo({5e-6, 0, kTop + 5e-6});
+  needle.largest = needle.work = needle.least_work = 0;
+  needle.toDepth(35e-6);
+  EXPECT_NEAR(needle.largest, onsetForce(branch), 0.02 * onsetForce(branch));
+  EXPECT_EQ(needle.cell->deformedSurface().holes.size(), 2u);
+  needle.toDepth(-5e-6);
+  EXPECT_GE(needle.least_work, 0);
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ TEST(PunctureConfig, ReadsToughness) {
   EXPECT_EQ(layers.layers[0].toughness, 4);
 }
 
-TEST(PunctureConfig, ToughnessIsOfTheOutermostLayerAndAlone) {
+TEST(PunctureConfig, ToughnessStandsAloneAndBeginsOutermost) {
   expectIn(errorsOf(with("{force: 1e-6, toughness: 1}")), {"cell/puncture/toughness = 1: must be left out"});
   expectIn(errorsOf(with("{barrier: 1e-12}")), {"cell/puncture/barrier = 1e-12: must be left out"});
   expectIn(errorsOf(with("{force: 1e-6, toughness_rate: {speed: 1e-4, exponent: 1}}")),
@@ -71,9 +71,15 @@ TEST(PunctureConfig, ToughnessIsOfTheOutermostLayerAndAlone) {
            {"cell/puncture/toughness_rate/speed = 0: must be a number in (0, inf) m/s",
             "cell/puncture/toughness_rate/exponent is missing"});
   expectIn(errorsOf(with("{toughness: 0}")), {"cell/puncture/toughness = 0: must be a number in (0, inf) J/m^2"});
+  expectIn(errorsOf(with("{strength: 1}")), {"cell/puncture/strength = 1: must be left out: it belongs to toughness"});
+  expectIn(errorsOf(with("{toughness: 1, strength: 1, toughness_rate: {speed: 1, exponent: 1}}")),
+           {"cell/puncture/strength = 1: must be left out where there is a toughness_rate"});
   expectIn(errorsOf(with("{layers: [{name: zona, toughness: 1, force: 1e-6}, {name: b, toughness: 1, stiffness: 1}]}")),
            {"cell/puncture/layers/0/name = zona: must have one of force",
-            "cell/puncture/layers/1/toughness = 1: must be left out"});
+            "cell/puncture/layers/1/stiffness = 1: must be left out"});
+  expectIn(errorsOf(with("{layers: [{name: zona, force: 1e-6}, {name: b, toughness: 1}]}")),
+           {"cell/puncture/layers/1/toughness = 1: must be left out: the layer before it is not pierced by mechanics"});
+  expectIn(errorsOf(with("{toughness: .inf}")), {"cell/puncture/toughness = .inf: must be a number"});
 }
 
 TEST(PunctureConfig, IsStrict) {

@@ -37,12 +37,13 @@ inline PunctureConfig oocyte() {
 class PunctureDrive {
  public:
   explicit PunctureDrive(const PunctureConfig& puncture, double rate = 1000, std::optional<PiercedBranch> branch = {},
-                         std::optional<double> pierced_error = {})
+                         std::optional<double> pierced_error = {}, std::optional<PronyTerm> prony = {})
       : step_(1 / rate) {
     auto inner = std::make_unique<SpringCell>(kRadius, kStiffness);
     spring = inner.get();
-    cell = std::make_unique<PuncturableCell>(sceneOf(puncture), std::move(inner), std::nullopt, std::move(branch),
-                                             pierced_error);
+    Scene scene = sceneOf(puncture);
+    if (prony) scene.cell.material().viscoelasticity.prony = {*prony};
+    cell = std::make_unique<PuncturableCell>(scene, std::move(inner), std::nullopt, std::move(branch), pierced_error);
   }
 
   /// On a straight line at `speed`, m/s; returns the force's z at the end, N.
@@ -69,6 +70,9 @@ class PunctureDrive {
       force = cell->step(tip, kAxis, time).force;
     }
     return force.z();
+  }
+  double holeLength() const {  ///< m, of a hole by mechanics: the spring is drawn with the dent before it
+    return cell->insertion().depth - (spring->contact() ? spring->contact()->indentation : 0);
   }
   int layers() const { return cell->insertion().layers_punctured; }
 

@@ -20,10 +20,13 @@ struct SpringBranch {
     }
     return knots;
   }
-  PiercedBranch make() const {
+  /// @param inner N, cost of the cell's next layer, which begins at a hole's length of `border`, m; 0: there is none
+  PiercedBranch make(double border = 0, double inner = 0) const {
     std::vector<PiercedBranch::Hole> holes;
     for (const double length : {1e-6, 3e-6, 7e-6, 15e-6, 30e-6}) holes.push_back({length, path(length)});
-    return PiercedBranch(path(0), holes, cost, barrier, wall_force);
+    PiercedBranch::Crack crack{{{0, cost}}, barrier, wall_force};
+    if (border > 0) crack.parts.push_back({border, inner});
+    return PiercedBranch(path(0), holes, crack);
   }
 };
 

@@ -24,7 +24,8 @@ class SpringCell : public CellModel {
     if (!contact_) contact_ = Contact{touch, Eigen::Vector3d::Zero(), 0};
     contact_->displacement = tip - contact_->contact_point;
     contact_->indentation = -contact_->displacement.dot(axis);
-    return {valid, valid ? Eigen::Vector3d(-stiffness_ * contact_->displacement) : Eigen::Vector3d::Zero()};
+    const double stiffness = (1 + viscous) * stiffness_;
+    return {valid, valid ? Eigen::Vector3d(-stiffness * contact_->displacement) : Eigen::Vector3d::Zero()};
   }
   void release() override {
     contact_.reset();
@@ -42,6 +43,7 @@ class SpringCell : public CellModel {
   bool valid = true;
   int released = 0;
   std::optional<double> error;  ///< N
+  double viscous = 0;           ///< of the elastic force, in addition
   double snap = 0;              ///< m, from the axis: a touch within it is on the axis, as that of a live cell
 
  private:

@@ -20,6 +20,11 @@ class ForceMemory {
   Eigen::Vector3d step(const Eigen::Vector3d& elastic, double duration);
   void reset();
 
+  /// Goes on from this elastic force (N), as if it had always been there, with this viscous one (N), of which each term
+  /// has a part in proportion to its modulus.
+  void start(const Eigen::Vector3d& elastic, const Eigen::Vector3d& viscous);
+  Eigen::Vector3d viscous() const;  ///< N, of the last step
+
  private:
   struct Branch {
     PronyTerm term;

@@ -1,4 +1,4 @@
-#include "cell/surrogate/force_memory.h"
+#include "cell/material/force_memory.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "cell/surrogate/force_memory.h"
+#include "cell/material/force_memory.h"
 
 #include <cmath>
 
@@ -18,6 +18,19 @@ Eigen::Vector3d ForceMemory::step(const Eigen::Vector3d& elastic, double duratio
     branch.force = std::exp(-ratio) * branch.force + branch.term.modulus_ratio * share * change;
     sum += branch.force;
   }
+  return sum;
+}
+
+void ForceMemory::start(const Eigen::Vector3d& elastic, const Eigen::Vector3d& viscous) {
+  elastic_ = elastic;
+  double sum = 0;
+  for (const Branch& branch : branches_) sum += branch.term.modulus_ratio;
+  for (Branch& branch : branches_) branch.force = branch.term.modulus_ratio / sum * viscous;
+}
+
+Eigen::Vector3d ForceMemory::viscous() const {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Branch& branch : branches_) sum += branch.force;
   return sum;
 }
 
