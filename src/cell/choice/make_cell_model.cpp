@@ -233,7 +233,6 @@ PiercedBranch branchFor(const Scene& scene, const CellModelConfig& config, std::
                   std::to_string(path + 1) + " of " + std::to_string(count));
   });
   description += "; " + describePuncture(solved, scene);
-  pierced_error = distanceFromLongHole(solved, scene);
   return solved;
 }
 

@@ -126,6 +126,7 @@ std::string SectionFamily::formMisfit(const Scene& scene) const {
   if (kind_ == Kind::kPierced &&
       (scene.cell.puncture.layers.empty() || !std::isfinite(scene.cell.puncture.layers.front().toughness)))
     return "cell/puncture has no toughness";
+  if (kind_ == Kind::kPierced && scene.cell.puncture.opening() > 0) return "cell/puncture has a strength";
   return "";
 }
 

@@ -19,6 +19,7 @@ class ForceMemory {
   /// Does not allocate.
   Eigen::Vector3d step(const Eigen::Vector3d& elastic, double duration);
   void reset();
+  bool isViscous() const { return !branches_.empty(); }
 
   /// Goes on from this elastic force (N), as if it had always been there, with this viscous one (N), of which each term
   /// has a part in proportion to its modulus.

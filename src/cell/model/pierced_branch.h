@@ -53,6 +53,7 @@ class PiercedBranch {
     std::vector<Part> parts = {Part()};  ///< by rising length, the first from 0
     double barrier = 0;                  ///< J, to begin a hole
     double wall_force = 0;               ///< N/m, of the wall on each metre of shaft, the sum of its pressure around it
+    double hole_radius = 0;              ///< m, undeformed
     double gives_way = 0;                ///< m, depth at which the material's strength is exceeded; 0: energy decides
   };
 

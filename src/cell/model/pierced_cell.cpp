@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <utility>
 
 #include "cell/contact/rigid_contact.h"
@@ -118,7 +117,7 @@ PiercedCell::PiercedCell(const PiercedCellConfig& config)
   if (!at_rest) {
     const Relaxation::Result result = Relaxation(*system_, {path_config_.length, kIterations}).relax(start);
     if (!result.converged)
-      throw std::runtime_error("the pierced cell does not come to rest under its surfaces' tension: " + result.reason);
+      throw NotAtRest("the pierced cell does not come to rest under its surfaces' tension: " + result.reason);
   }
   path_ = std::make_unique<LoadPath>(*system_, path_config_, start);
   const auto& nodes = body_->mesh().nodes;
@@ -219,9 +218,8 @@ bool PiercedCell::jump(const Eigen::Vector3d& target) {
 
 Eigen::Vector3d PiercedCell::place() const { return start_ + path_->translation(); }
 bool PiercedCell::isAtBottom() const { return bottom() - depth() < kGap * config_.tip_radius; }
-bool PiercedCell::isInside() const {
-  return path_->state()[2 * rim_] > kAround * (config_.tip_radius - config_.hole_radius);
-}
+bool PiercedCell::isInside() const { return mouthOpening() > kAround * (config_.tip_radius - config_.hole_radius); }
+double PiercedCell::mouthOpening() const { return path_->state()[2 * rim_]; }
 double PiercedCell::force() const { return -path_->reaction().z(); }
 double PiercedCell::energy() const { return path_->energy(); }
 double PiercedCell::depth() const { return -place().z(); }

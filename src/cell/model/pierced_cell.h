@@ -3,6 +3,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,12 @@ struct PiercedCellConfig {
   double radius() const { return layers.front().outer_radius; }  ///< m, of the cell
 };
 
+/// Thrown where the tension of its surfaces tears an empty hole open.
+class NotAtRest : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 /// The solution of such a cell in its section while the needle is led along the axis: the branch of equilibria that a
 /// puncture leads to (doc/design/puncture.md). Needle and hole touch by the contact of RigidContact. The tension of a
 /// layer's sphere ends at the hole, and Laplace's pressure acts on the wall, too (SurfaceTension).
@@ -62,6 +69,8 @@ class PiercedCell {
 
   /// The hole's rim has the needle within it. @pre there is a hole
   bool isInside() const;
+
+  double mouthOpening() const;  ///< m, of the wall below the rim, across the axis. @pre there is a hole
 
   const std::string& reason() const { return reason_; }
   double force() const;        ///< N, that pushes the needle out

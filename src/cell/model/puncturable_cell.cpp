@@ -13,6 +13,7 @@ constexpr double kMouth = 1.5;  ///< radii of the tip, of way in which a hole ta
 constexpr int kEnergySteps = 32;
 constexpr int kFirstLengths = 64;       ///< that are tried where a membrane may stop a first hole
 constexpr double kUprightAxis = 0.999;  ///< cosine: the branch is that of an upright needle
+constexpr double kInto = 0.01;          ///< tip radii into a layer, from which on the hole is in it
 constexpr double kOnAxis = 0.5;         ///< tip radii from the axis: same
 constexpr double kAlone = 1e-6;         ///< of the branch's force
 constexpr double kGrows = 0.99;         ///< of the crack's cost, that the release of a hole is that has just grown
@@ -49,7 +50,8 @@ PuncturableCell::PuncturableCell(const Scene& scene, std::unique_ptr<CellModel> 
   if (tongue) bore_.emplace(boreConfig(scene), std::move(*tongue));
   if (!branch_) return;
   crack_.emplace(*branch_, config_.layers.front().toughness_rate);
-  if (branch_->onset() && tip_.taper > 0) taper_.emplace(scene, branch_->onset()->depth - branch_->onset()->length);
+  if (branch_->onset() && tip_.taper > 0)
+    taper_.emplace(scene, branch_->crack().hole_radius, branch_->onset()->depth - branch_->onset()->length);
   config_.layers.front().force = crack_->onsetForce();
 }
 
@@ -199,15 +201,16 @@ double PuncturableCell::firstLength(double depth) const {
 
 void PuncturableCell::loseToBranch(const PunctureHoles::Hole& opened, const Eigen::Vector3d& force, double work,
                                    const Pose& pose) {
-  const double depth = (opened.position - pose.tip).dot(pose.axis);
+  const double depth = (opened.position - pose.tip).dot(pose.axis), elastic = branch_->whole(depth).force;
+  const bool viscous = memory_.isViscous() && elastic > 0;
+  const double share = viscous ? std::max(force.dot(pose.axis) / elastic - 1, 0.0) : 0;  // of the elastic force
   mouth_from_ = 0;
-  if (openingEnergy(depth, opened.length) > work) mouth_from_ = depth;
+  if ((1 + share) * openingEnergy(depth, opened.length) > work) mouth_from_ = depth;
   const Eigen::Vector3d opening = openingForce(depth, opened.length) * pose.axis;
-  const double elastic = branch_->whole(depth).force, viscous = std::max(force.dot(pose.axis) - elastic, 0.0);
-  memory_.start(opening, elastic > 0 ? Eigen::Vector3d(viscous / elastic * opening) : Eigen::Vector3d::Zero());
+  memory_.start(opening, share * opening);
   const double released = branch_->whole(depth).energy - branch_->at(depth, opened.length).energy -
                           crack_->tougher() * branch_->costUntil(opened.length) - branch_->crack().barrier;
-  const double kept = work - openingEnergy(depth, opened.length);
+  const double kept = work - (1 + share) * openingEnergy(depth, opened.length);
   fading_.start(force - opening - memory_.viscous(), pose.tip, std::min(released, kept), pose.time);
 }
 
@@ -252,11 +255,15 @@ Eigen::Vector3d PuncturableCell::forceInside(const Pose& pose) {
 void PuncturableCell::failByBranch(const Eigen::Vector3d& force, const Pose& pose) {
   PunctureHoles::Hole& hole = holes_[*hole_];
   const Layer& layer = config_.layers[hole.layers];
+  const double depth = insertion_.depth;
   if (std::isfinite(layer.toughness)) {
-    if (hole.length > branch_->crack().parts[hole.layers].from) failLayer(pose);
+    coverBore(hole.layers);
+    if (layersWithin(hole.length) <= hole.layers) return;
+    const double kept = workTo(force, pose.tip) - openingEnergy(depth, hole.length);
+    fading_.start(fading_.at(pose.tip, pose.time) + lost_at_border_ * pose.axis, pose.tip, kept, pose.time);
+    failLayer(pose);
     return;
   }
-  const double depth = insertion_.depth;
   const PiercedBranch::Resistance resistance = resistanceBefore();
   // No more than what the cell presses the tip with: a needle that goes back leaves the membrane.
   const double pressed = branch_->at(depth, hole.length).release - resistance.tougher * branch_->costAt(hole.length);
@@ -276,11 +283,27 @@ void PuncturableCell::failByBranch(const Eigen::Vector3d& force, const Pose& pos
 double PuncturableCell::pierce(const Pose& pose) {
   PunctureHoles::Hole& hole = holes_[*hole_];
   const double depth = insertion_.depth;
+  const double before = openingForce(depth, hole.length);
+  const int within = layersWithin(hole.length);
+  const Eigen::Vector3d viscous_before = memory_.viscous();
   hole.length = branch_->grown(depth, hole.length, resistanceBefore());
   cell_->step(pose.tip + std::min(hole.length, depth) * pose.axis, pose.axis, pose.time);
   const double elastic = openingForce(depth, hole.length);
+  lost_at_border_ = 0;
+  if (layersWithin(hole.length) > within && before > elastic) {
+    lost_at_border_ = before - elastic;
+    memory_.start(elastic * pose.axis, viscous_before);
+    return std::max(before + viscous_before.dot(pose.axis), 0.0);
+  }
   const double viscous = memory_.step(elastic * pose.axis, pose.duration).dot(pose.axis);
   return viscous == 0 ? elastic : std::max(elastic + viscous, 0.0);  // relaxed so far that the cell would pull
+}
+
+int PuncturableCell::layersWithin(double length) const {
+  int count = 0;
+  for (const PiercedBranch::Crack::Part& part : branch_->crack().parts)
+    count += length > part.from + kInto * tip_.radius;
+  return count;
 }
 
 PiercedBranch::Resistance PuncturableCell::resistanceBefore() const {

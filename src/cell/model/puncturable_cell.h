@@ -117,7 +117,8 @@ class PuncturableCell : public CellModel {
   double firstLength(double depth) const;              ///< m
   PiercedBranch::Resistance resistanceBefore() const;  ///< of the crack, before the tip in its hole
   void failByBranch(const Eigen::Vector3d& force, const Pose& pose);
-  double gapsTo(int layer) const;  ///< m, of all before it and its own, at rest
+  int layersWithin(double length) const;  ///< of the cell, into which a hole of this length goes
+  double gapsTo(int layer) const;         ///< m, of all before it and its own, at rest
   /// N along the pipette, of the branch, whose hole grows, with its memory; and the dent that is drawn.
   double pierce(const Pose& pose);
   double openingForce(double depth, double length) const;   ///< N along the pipette, of the branch and the taper
@@ -161,6 +162,7 @@ class PuncturableCell : public CellModel {
   std::optional<CrackSpeed> crack_;  ///< of the branch
   std::optional<ShaftTaper> taper_;  ///< same
   ForceMemory memory_;               ///< of the branch's force
+  double lost_at_border_ = 0;        ///< N, of the branch in this step: the hole has come into the cell's next layer
   std::optional<double> pierced_error_, force_error_;
   double mouth_from_ = 0;  ///< m below the surface, where the needle has entered the hole by the branch
   std::optional<BoreSuction> bore_;

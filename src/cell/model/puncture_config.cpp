@@ -20,17 +20,20 @@ void readToughness(ConfigReader& reader, PunctureConfig::Layer& layer) {
     if (reader.has(key) && !reader.has("toughness"))
       reader.error(key, "must be left out: it belongs to toughness only");
   }
-  if (reader.has("strength") && reader.has("toughness_rate"))
-    reader.error("strength", "must be left out where there is a toughness_rate: how it grows with it is not known");
+  for (const char* key : {"toughness_rate", "barrier"}) {
+    if (reader.has("strength") && reader.has(key))
+      reader.error("strength", std::string("must be left out where there is a ") + key);
+  }
   if (!reader.has("toughness_rate")) return;
   ConfigReader rate = reader.section("toughness_rate");
   readQuantity(rate, "speed", layer.toughness_rate.speed, Range::positive(), "m/s", ConfigReader::kRequired);
   readQuantity(rate, "exponent", layer.toughness_rate.exponent, kRateExponents, "", ConfigReader::kRequired);
 }
 
-/// @param before the layer outside of it; null: it is the outermost
-void readLayer(ConfigReader reader, const PunctureConfig::Layer* before, PunctureConfig::Layer& layer) {
-  const bool outermost = before == nullptr;
+/// @param before those outside of it
+void readLayer(ConfigReader reader, const std::vector<PunctureConfig::Layer>& before, PunctureConfig::Layer& layer) {
+  const bool outermost = before.empty();
+  const bool behind_tough = before.size() > 1 && std::isfinite(before.back().toughness);
   reader.text("name", layer.name, ConfigReader::kRequired);
   readQuantity(reader, "force", layer.force, Range::positive(), "N");
   readQuantity(reader, "depth", layer.depth, Range::positive(), "m");
@@ -49,7 +52,7 @@ void readLayer(ConfigReader reader, const PunctureConfig::Layer* before, Punctur
     }
   }
   if (!outermost && reader.has("toughness")) {
-    if (std::isinf(before->toughness))
+    if (std::isinf(before.back().toughness))
       reader.error("toughness", "must be left out: the layer before it is not pierced by mechanics");
     for (const char* key : {"barrier", "strength", "toughness_rate", "stiffness", "gap", "aspiration"}) {
       if (reader.has(key)) reader.error(key, "must be left out: a layer of the cell behind the outermost has none");
@@ -58,6 +61,8 @@ void readLayer(ConfigReader reader, const PunctureConfig::Layer* before, Punctur
   }
   if (reader.has("aspiration")) layer.aspiration = AspirationConfig::read(reader.section("aspiration"));
   if (outermost) return;
+  if (behind_tough)
+    reader.error("name", "must have a toughness, as the layer before it, which is not the outermost, has");
   readQuantity(reader, "stiffness", layer.stiffness, Range::positive(), "N/m", ConfigReader::kRequired);
   readQuantity(reader, "gap", layer.gap, Range::nonNegative(), "m");
 }
@@ -118,8 +123,8 @@ PunctureConfig PunctureConfig::atForce(double force) {
 void PunctureConfig::read(ConfigReader reader) {
   if (reader.has("layers")) {
     for (ConfigReader& layer : reader.sections("layers")) {
-      const std::optional<Layer> before = layers.empty() ? std::nullopt : std::optional(layers.back());
-      readLayer(layer, before ? &*before : nullptr, layers.emplace_back());
+      const std::vector<Layer> before = layers;
+      readLayer(layer, before, layers.emplace_back());
     }
     if (layers.empty()) reader.error("layers", "must have at least one layer");
     for (const char* key : {"force", "toughness", "toughness_rate", "barrier", "strength"}) {

@@ -18,9 +18,11 @@ namespace microinjection {
 /// a function of the depth alone, hence conservative. Of the dent in which the hole was made nothing is opened.
 class ShaftTaper {
  public:
+  /// @param hole m, its undeformed radius, below the tip's
   /// @param dent m, depth of the tip in the whole cell less the length of its first hole
-  /// @pre scene.needle.tip.taper > 0, and steadyPenetration(scene) does not throw
-  ShaftTaper(const Scene& scene, double dent);
+  /// @pre scene.needle.tip.taper > 0, and the cell is homogeneous
+  /// Throws ConfigError where the shaft gets so wide that the material cannot be stretched around it.
+  ShaftTaper(const Scene& scene, double hole, double dent);
 
   double force(double depth) const;  ///< N, out of the cell; O(1)
 

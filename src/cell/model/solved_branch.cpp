@@ -31,14 +31,15 @@ constexpr double kClosest = 0.02;  // knots
 constexpr double kLongest = 1.3;   // hole, of the cell's radius
 constexpr double kDeepest = 1.7;   // needle in the whole cell, same
 constexpr double kSmallestHole = 0.15, kLargestHole = 0.9;            // that the meshes can have
-constexpr double kNearBorder = 0.2;                                   // of two layers, within which no hole ends
+constexpr double kNearBorder = 0.25;                                  // of two layers, within which no hole ends
 const std::vector<double> kBelowBorder = {kNearBorder, 0.5, 1, 1.5};  // that holes end, too
 constexpr double kRounding = 1e-9;
 constexpr std::size_t kMostHoles = 100;
-constexpr double kCohesiveStep = 0.1;
+constexpr double kCohesiveStep = 0.05;
+constexpr double kSmallestLayer = 2;                              // radius of the innermost one
 constexpr double kDrop = 0.98;                                    // of the largest force: the strength is reached
 constexpr double kSmallestOpening = 0.03, kLargestOpening = 0.2;  // the latter of R - b, that a hole opens by
-constexpr int kVersion = 4;                                       // of what is stored
+constexpr int kVersion = 5;                                       // of what is stored
 
 double modulusOf(const Scene& scene) { return scene.cell.material().young_modulus; }
 
@@ -85,13 +86,28 @@ std::vector<double> lengthsOf(const PiercedCellConfig& config) {
   return lengths;
 }
 
+bool relaxAlike(const ViscoelasticityConfig& one, const ViscoelasticityConfig& other) {
+  return std::equal(one.prony.begin(), one.prony.end(), other.prony.begin(), other.prony.end(),
+                    [](const PronyTerm& a, const PronyTerm& b) {
+                      return a.modulus_ratio == b.modulus_ratio && a.relaxation_time == b.relaxation_time;
+                    });
+}
+
 void requirePierceable(const Scene& scene) {
   const std::string at = "cell/puncture/layers/0/toughness: ";
   if (scene.cell.tensegrity) throw ConfigError(at + "a tensegrity is not pierced by mechanics; give it a force");
-  if (scene.cell.puncture.toughLayers() > static_cast<int>(scene.cell.layers.size()))
-    throw ConfigError("cell/puncture/layers: " + std::to_string(scene.cell.puncture.toughLayers()) +
-                      " have a toughness, but the cell has " + std::to_string(scene.cell.layers.size()) +
-                      " layers; those behind them need a force");
+  const int tough = scene.cell.puncture.toughLayers(), layers = static_cast<int>(scene.cell.layers.size());
+  if (tough != layers)
+    throw ConfigError("cell/puncture/layers: " + std::to_string(tough) + " have a toughness, but the cell has " +
+                      std::to_string(layers) + " layers, of which each needs one");
+  if (layers > 1 && scene.cell.puncture.shaft.coefficient > 0)
+    throw ConfigError(
+        "cell/puncture/shaft/coefficient: must be left out of a cell with layers: how each presses on the shaft is not "
+        "known");
+  if (layers > 1 && scene.needle.tip.taper > 0)
+    throw ConfigError("needle/tip/taper: must be left out of a cell with layers");
+  if (scene.cell.layers.back().outer_radius < kSmallestLayer * scene.needle.tip.radius)
+    throw ConfigError(at + "the innermost layer is smaller than two radii of the tip");
   if (scene.needle.tip.shape != "hemisphere")
     throw ConfigError(at + "needle/tip/shape must be hemisphere, not " + scene.needle.tip.shape +
                       ", for a cell that is pierced by mechanics");
@@ -99,6 +115,8 @@ void requirePierceable(const Scene& scene) {
     if (!makeMaterial(layer.material)->resistsInversion())
       throw ConfigError(at + "the material " + layer.material.model +
                         " has no limit of compression and cannot be pierced; use neo_hookean, ogden or gent");
+    if (!relaxAlike(layer.material.viscoelasticity, scene.cell.material().viscoelasticity))
+      throw ConfigError(at + "layers that do not relax alike are not pierced by mechanics");
   }
 }
 
@@ -111,6 +129,8 @@ void requireCohesion(const Scene& scene, double hole_radius) {
   message << "cell/puncture/layers/0/strength = " << scene.cell.puncture.layers.front().strength << " Pa: ";
   if (contact.mode != "sliding" || contact.friction != 0)
     throw ConfigError(message.str() + "needle/contact/mode must be sliding, without friction");
+  if (scene.cell.layers.size() > 1 || scene.cell.layers.front().surface_tension > 0)
+    throw ConfigError(message.str() + "the cell must be homogeneous, without surface tension");
   const double largest = kLargestOpening * (1 - hole_radius);
   if (opening >= kSmallestOpening && opening <= largest) return;
   const double strength = scene.cell.puncture.layers.front().strength;
@@ -131,22 +151,23 @@ std::vector<Knot> wholePath(PiercedCellConfig config, const Scene::Contact& cont
   return knots;
 }
 
-/// To where the strength is reached: the last equilibrium, or the largest force before it falls.
+/// To where the wall at its mouth has opened beyond its strength and the force is largest, or no equilibrium is stable.
 std::vector<Knot> cohesivePath(PiercedCellConfig config, const PiercedCellConfig::Cohesion& cohesion, double longest) {
   config.hole_length = longest;
   config.cohesion = cohesion;
   PiercedCell cell(config);
   std::vector<Knot> knots = {{0, 0, 0}};
-  double largest = 0;
-  for (bool more = true; more && cell.force() >= kDrop * largest && knots.back().beyond < config.radius();) {
+  bool more = true;
+  while (more && knots.back().beyond < config.radius()) {
     more = cell.advance(knots.back().beyond + kCohesiveStep);
-    if (cell.depth() - knots.back().beyond < kClosest * kCohesiveStep) break;
-    knots.push_back({cell.depth(), cell.force(), cell.energy()});
-    largest = std::max(largest, cell.force());
+    if (cell.force() < knots.back().force) break;
+    if (cell.depth() - knots.back().beyond > kClosest * kCohesiveStep)
+      knots.push_back({cell.depth(), cell.force(), cell.energy()});
   }
-  const auto top =
-      std::max_element(knots.begin(), knots.end(), [](const Knot& a, const Knot& b) { return a.force < b.force; });
-  knots.erase(top + 1, knots.end());
+  if (cell.mouthOpening() < cohesion.opening)
+    throw ConfigError(
+        "cell/puncture/layers/0/strength: the whole cell is not solved to where it is exceeded, but to a depth of " +
+        std::to_string(cell.depth()) + " tip radii: " + (more ? "no drop of the force" : cell.reason()));
   return knots;
 }
 
@@ -156,7 +177,7 @@ std::vector<Knot> holePath(const PiercedCellConfig& config, double highest, doub
   std::optional<PiercedCell> made;
   try {
     made.emplace(config);
-  } catch (const std::runtime_error&) {  // the tension of its surfaces tears it open
+  } catch (const NotAtRest&) {
     return {};
   }
   PiercedCell& cell = *made;
@@ -351,6 +372,7 @@ PiercedBranch branchOf(PiercedPaths paths, const Scene& scene) {
   crack.barrier = layer.barrier;
   crack.wall_force = around * steady.wall_pressure;
   crack.gives_way = paths.gives_way;
+  crack.hole_radius = steady.hole_radius * scene.needle.tip.radius;
   return PiercedBranch(std::move(paths.whole), std::move(paths.holes), std::move(crack));
 }
 
@@ -367,6 +389,8 @@ PiercedBranch storedPiercedBranch(const Scene& scene, const std::function<void(i
   if (scene.cell.puncture.opening() > 0)  // else the paths do not depend on what a crack costs
     description << "toughness " << scene.cell.puncture.layers.front().toughness << ", opening "
                 << scene.cell.puncture.opening() << ", ";
+  for (int i = 1; i < scene.cell.puncture.toughLayers(); ++i)  // by which long holes are followed
+    description << "toughness behind it " << scene.cell.puncture.layers[i].toughness << ", ";
   description << describeCellAndTip(scene);
   const std::string folder = cacheDirectory("pierced");
   const std::string path = folder.empty() ? "" : folder + "/" + contentHash(description.str()) + ".txt";

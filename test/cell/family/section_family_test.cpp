@@ -303,6 +303,24 @@ TEST(FamilyBranch, IsThatOfASolution) {
   EXPECT_LT(found->pierced_error, 0.05);
 }
 
+/// Holes longer than the family's are continued: no step there, and the force stays that of a long hole.
+TEST(FamilyBranch, GoesOnBeyondItsBorderInTheMiddleOfAPenetration) {
+  const Scene scene = loadScene(MICROINJECTION_SOURCE_DIR "/config/cells/mouse_oocyte_tough.yaml");
+  std::string reason;
+  const PiercedBranch branch = findFamilyBranch(kFamilies, scene, reason).value().branch;
+  const double tip = scene.needle.tip.radius, steady = steadyPenetration(scene).force_in * tip * tip;
+  double length = branch.onset()->length, last = branch.onset()->pierced_force, jump = 0, furthest = 0;
+  for (double depth = branch.onset()->depth; length < 9 * tip; depth += tip / 40) {
+    length = branch.grown(depth, length);
+    const double force = branch.at(depth, length).force;
+    jump = std::max(jump, std::abs(force - last));
+    if (length > 5 * tip) furthest = std::max(furthest, std::abs(force / steady - 1));
+    last = force;
+  }
+  EXPECT_LT(jump, 0.02 * steady);
+  EXPECT_LT(furthest, 0.05);
+}
+
 /// The reason for which a shipped family file is refused once a line of it is another one.
 std::string refusalOf(const std::string& file, const std::string& line, const std::string& other) {
   std::ifstream shipped(kFamilies + file);
@@ -340,6 +358,10 @@ TEST(FamilyBranch, RefusesWhatIsOutside) {
   scene.cell.puncture.layers.front().toughness *= 3;
   EXPECT_FALSE(findFamilyBranch(kFamilies, scene, reason));
   EXPECT_TRUE(says(reason, "toughness = ") && says(reason, "must be from 0.3 to 2")) << reason;
+  scene = loadScene(MICROINJECTION_SOURCE_DIR "/config/cells/mouse_oocyte_tough.yaml");
+  scene.cell.puncture.layers.front().strength = 5e3;
+  EXPECT_FALSE(findFamilyBranch(kFamilies, scene, reason));
+  EXPECT_TRUE(says(reason, "cell/puncture has a strength")) << reason;
   scene.cell.puncture = PunctureConfig::atForce(1e-6);
   EXPECT_FALSE(findFamilyBranch(kFamilies, scene, reason));
   EXPECT_TRUE(says(reason, "cell/puncture has no toughness")) << reason;

@@ -26,5 +26,15 @@ TEST(ForceMemory, RelaxesAsItsTermsSay) {
   EXPECT_NEAR(last, 0.5 * 0.2 * (1 - std::exp(-1 / 0.2)), 1e-12);
 }
 
+TEST(ForceMemory, GoesOnFromAViscousForceThatRelaxes) {
+  ForceMemory memory({{0.5, 0.1}, {0.25, 10}});
+  const Eigen::Vector3d elastic(0, 0, 1e-6), viscous(0, 0, 0.3e-6);
+  memory.start(elastic, viscous);
+  EXPECT_TRUE(memory.viscous().isApprox(viscous));
+  const double later = memory.step(elastic, 0.2).z();
+  EXPECT_NEAR(later, 0.2e-6 * std::exp(-2) + 0.1e-6 * std::exp(-0.02), 1e-12);
+  EXPECT_FALSE(ForceMemory({}).isViscous());
+}
+
 }  // namespace
 }  // namespace microinjection

@@ -268,6 +268,9 @@ TEST(PiercedSurfaceTension, DerivativesAreThoseOfTheEnergyAndTheHoleIsMissing) {
       energy += local.energy;
     }
     EXPECT_NEAR(energy, -kTension * cap, 0.02 * kTension * cap) << layer;
+    const double ball = 4 * M_PI / 3 * std::pow(radius, 3), length = 40e-6 - (kTenseRadii[0] - radius);
+    const double hole = M_PI * 4e-12 * (length - cap / (2 * M_PI * radius)) + M_PI * 4e-12 * cap / (4 * M_PI * radius);
+    EXPECT_NEAR(ball - surface.enclosedVolume(undeformed), hole, 0.02 * hole) << "p0 acts on the wall, too";
     EXPECT_NEAR(surface.area(undeformed), 4 * M_PI * radius * radius - cap, 1e-5 * 4 * M_PI * radius * radius);
     std::mt19937 generator(5);
     std::uniform_real_distribution<double> entry(-0.1e-6, 0.1e-6);

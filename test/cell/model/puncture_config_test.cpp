@@ -77,6 +77,11 @@ TEST(PunctureConfig, ToughnessStandsAloneAndBeginsOutermost) {
   expectIn(errorsOf(with("{layers: [{name: zona, toughness: 1, force: 1e-6}, {name: b, toughness: 1, stiffness: 1}]}")),
            {"cell/puncture/layers/0/name = zona: must have one of force",
             "cell/puncture/layers/1/stiffness = 1: must be left out"});
+  expectIn(errorsOf(with("{toughness: 1, strength: 1, barrier: 1e-12}")),
+           {"cell/puncture/strength = 1: must be left out where there is a barrier"});
+  expectIn(
+      errorsOf(with("{layers: [{name: a, toughness: 1}, {name: b, toughness: 1}, {name: c, stiffness: 1, force: 1}]}")),
+      {"cell/puncture/layers/2/name = c: must have a toughness, as the layer before it"});
   expectIn(errorsOf(with("{layers: [{name: zona, force: 1e-6}, {name: b, toughness: 1}]}")),
            {"cell/puncture/layers/1/toughness = 1: must be left out: the layer before it is not pierced by mechanics"});
   expectIn(errorsOf(with("{toughness: .inf}")), {"cell/puncture/toughness = .inf: must be a number"});

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
+#include "base/errors.h"
 #include "cell/model/solved_branch.h"
 
 namespace microinjection {
@@ -25,8 +27,8 @@ Scene sceneWith(double taper) {
 TEST(ShaftTaper, FeelsWhatOpensTheHoleFurther) {
   const double slope = 0.1;
   const Scene scene = sceneWith(std::atan(slope));
-  const ShaftTaper taper(scene, 4e-6);
   const double hole = 3e-6 * steadyPenetration(scene).hole_radius;
+  const ShaftTaper taper(scene, hole, 4e-6);
   const auto energy = [&](double radius) {
     const double opened = radius * radius - hole * hole;
     const double outside = std::log(std::sqrt(1 + opened / (40e-6 * 40e-6)));
@@ -37,6 +39,18 @@ TEST(ShaftTaper, FeelsWhatOpensTheHoleFurther) {
   for (const double length : {5e-6, 20e-6, 35e-6}) {
     const double expected = energy(3e-6 + slope * length) - energy(3e-6);
     EXPECT_NEAR(taper.force(4e-6 + length), expected, 0.02 * expected) << length;
+  }
+}
+
+TEST(ShaftTaper, RefusesAShaftThatTheMaterialCannotBeStretchedAround) {
+  Scene scene = sceneWith(0.1);
+  scene.cell.material().model = "gent";
+  scene.cell.material().gent_limit = 10;
+  try {
+    ShaftTaper(scene, 1.1e-6, 4e-6);
+    FAIL();
+  } catch (const ConfigError& error) {
+    EXPECT_NE(std::string(error.what()).find("needle/tip/taper = 0.1 rad"), std::string::npos) << error.what();
   }
 }
 

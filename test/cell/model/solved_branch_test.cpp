@@ -63,6 +63,21 @@ TEST(SolvedBranch, AShellIsPiercedAndThenItsInside) {
   EXPECT_LT(distanceFromLongHole(branch, scene).value(), 0.05);
 }
 
+TEST(SolvedBranch, AMaterialWithAStrengthGivesWayWhereThatIsExceeded) {
+  Scene scene = softScene();
+  scene.needle.contact.mode = "sliding";
+  PunctureConfig::Layer& layer = scene.cell.puncture.layers.front();
+  double weak = 0;
+  for (const double opening : {0.09, 0.07}) {  // tip radii
+    layer.strength = layer.toughness / (M_E * opening * 3e-6);
+    const PiercedBranch branch = solvePiercedBranch(scene, -1);
+    ASSERT_TRUE(branch.onset());
+    EXPECT_GT(branch.crack().gives_way, weak) << "a stronger one gives way later";
+    EXPECT_EQ(branch.onset()->depth, weak = branch.crack().gives_way);
+    EXPECT_LT(branch.onset()->pierced_force, 0.8 * branch.onset()->force);
+  }
+}
+
 PiercedCellConfig pierced(double radius, double held_radius, double hole_radius, double hole_length) {
   PiercedCellConfig config;
   config.layers = softScene().cell.layers;
@@ -160,7 +175,7 @@ TEST(SteadyPenetration, RefusesWhatItCannotPierce) {
   EXPECT_NE(refusal([](Scene& scene) { scene.cell.material().model = "linear"; }).find("linear"), std::string::npos);
   EXPECT_NE(refusal([](Scene& scene) {
               scene.cell.puncture.layers.push_back(scene.cell.puncture.layers.front());
-            }).find("the cell has 1 layers"),
+            }).find("2 have a toughness, but the cell has 1 layers"),
             std::string::npos);
   const std::string sticky = refusal([](Scene& scene) { scene.cell.puncture.layers[0].strength = 4e3; });
   EXPECT_NE(sticky.find("sliding"), std::string::npos) << sticky;
