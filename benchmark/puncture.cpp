@@ -189,38 +189,41 @@ void layers(PrintedTable& table, double level) {
   table.add(
       "study,inside_over_shell,tension_over_mu_R,onset_depth_over_R,onset_force,through_depth_over_R,"
       "force_in_shell,force_inside,closed_inside,seconds\n");
-  for (const double softer : {0.5, 0.1}) {
-    for (const double tension : {0.0, 0.1}) {
-      Scene scene = sceneOf({"shell", "neo_hookean", 0, 12, 4, 0.5});
-      scene.needle.contact.mode = "sticking";
-      scene.cell.layers.push_back(scene.cell.layers.front());
-      Scene::Layer& inside = scene.cell.layers.back();
-      inside.name = "inside";
-      inside.outer_radius -= 2 * kTip;
-      inside.material.young_modulus *= softer;
-      inside.surface_tension = tension * 1e3 * kTip;
-      scene.cell.puncture.layers.emplace_back().toughness = softer * scene.cell.puncture.layers.front().toughness;
-      const double unit = M_PI * kTip * kTip * 1e3, begin = now();
-      const PiercedBranch branch = solvePiercedBranch(scene, level);
-      if (!branch.onset()) throw std::runtime_error("a shell without an onset");
-      const PiercedBranch::Onset onset = *branch.onset();
-      const double border = branch.crack().parts.back().from;
-      double depth = onset.depth, length = onset.length, in_shell = onset.pierced_force;
-      while (length <= border) {
-        in_shell = branch.at(depth, length).force;
-        length = branch.grown(depth += kTip / 40, length);
-      }
-      const double through = depth;
-      while (length < border + 3 * kTip) length = branch.grown(depth += kTip / 40, length);
-      const double hole = steadyPenetration(scene).hole_radius;
-      const HoleExpansion expansion(*makeMaterial(inside.material), inside.outer_radius / kTip);
-      const double closed = kTip * kTip * expansion.at(hole).energy + branch.crack().parts.back().cost;
-      char row[200];
-      std::snprintf(row, sizeof row, "layers,%g,%g,%.3f,%.4f,%.3f,%.4f,%.4f,%.4f,%.0f\n", softer, tension,
-                    onset.depth / kTip, onset.force / unit, through / kTip, in_shell / unit,
-                    branch.at(depth, length).force / unit, closed / unit, now() - begin);
-      table.add(row);
-    }
+  struct Inside {
+    double softer, tension;
+  };
+  for (const auto& [softer, tension] : {Inside{0.5, 0}, {0.1, 0}, {0.1, 0.1}}) {
+    Scene scene = sceneOf({"shell", "neo_hookean", 0, 12, 4, 0.5});
+    scene.needle.contact.mode = "sticking";
+    scene.cell.layers.push_back(scene.cell.layers.front());
+    Scene::Layer& inside = scene.cell.layers.back();
+    inside.name = "inside";
+    inside.outer_radius -= 2 * kTip;
+    inside.material.young_modulus *= softer;
+    inside.surface_tension = tension * 1e3 * kTip;
+    scene.cell.puncture.layers.emplace_back().toughness = softer * scene.cell.puncture.layers.front().toughness;
+    const double unit = M_PI * kTip * kTip * 1e3, begin = now();
+    const PiercedBranch branch = solvePiercedBranch(scene, level);
+    if (!branch.onset()) throw std::runtime_error("a shell without an onset");
+    const PiercedBranch::Onset onset = *branch.onset();
+    const double border = branch.crack().parts.back().from;
+    double depth = onset.depth, length = onset.length, in_shell = onset.pierced_force;
+    const auto goOn = [&] {
+      length = branch.grown(depth += kTip / 40, length);
+      if (depth > 1.5 * scene.radius()) throw std::runtime_error("the hole stays behind the needle");
+    };
+    for (; length <= border; goOn()) in_shell = branch.at(depth, length).force;
+    const double through = depth;
+    while (length < border + 3 * kTip) goOn();
+    const double hole = steadyPenetration(scene).hole_radius;
+    const auto material = makeMaterial(inside.material);
+    const HoleExpansion expansion(*material, inside.outer_radius / kTip);
+    const double closed = kTip * kTip * expansion.at(hole).energy + branch.crack().parts.back().cost;
+    char row[200];
+    std::snprintf(row, sizeof row, "layers,%g,%g,%.3f,%.4f,%.3f,%.4f,%.4f,%.4f,%.0f\n", softer, tension,
+                  onset.depth / kTip, onset.force / unit, through / kTip, in_shell / unit,
+                  branch.at(depth, length).force / unit, closed / unit, now() - begin);
+    table.add(row);
   }
 }
 
